@@ -7,6 +7,7 @@ use serde_json::{Value, json};
 
 use super::scaling::CoefficientSizes;
 use super::schema::{AreaPerForce, AreaPerMoment, Beam, Bladders, Case, LowerRow, Span, SpanLengths, SpanRows};
+use crate::functions::Profile;
 
 /// `kGA/(E A)` of a full rectangle, nearly incompressible: 5/6 of a third.
 const FULL_SHEAR: f64 = 5.0 / 18.0;
@@ -129,6 +130,57 @@ pub fn segments(case: &Case) -> Vec<SegmentValues> {
         true => vec![],
         false => all,
     }
+}
+
+/// Values of the solid within the segments of tapers, from those in the middle of each segment: at the ends of `parts` equal parts of the
+/// segment. Empty for segments with constant values, and for a beam without tapers. A moment-curvature law belongs to a whole segment.
+pub fn within(case: &Case, segments: &[SegmentValues], parts: usize) -> Vec<Vec<Beam>> {
+    let graded = |span: &Span| span.beam.given().any(|(_, profile)| profile.uniform().is_none());
+    if segments.is_empty() || bends_nonlinearly(case) || !case.spans.iter().any(graded) {
+        return vec![];
+    }
+    let counts = SpanLengths::new(case).counts.into_iter().flatten();
+    let all = case.spans.iter().zip(counts).flat_map(|(span, count)| {
+        let index = move |k: usize, part: usize| (k as f64 + part as f64 / parts as f64) / count as f64;
+        (0..count).map(move |k| (span, (0..=parts).map(move |part| index(k, part))))
+    });
+    let of = |(middle, (span, x)): (&SegmentValues, (&Span, _))| match graded(span) {
+        true => Iterator::map(x, |x| taper(span, &middle.beam, x)).collect(),
+        false => vec![],
+    };
+    segments.iter().zip(all).map(of).collect()
+}
+
+/// Values of the solid at a place of a span, from those at another place. Those that the span does not give follow the scaling laws of
+/// its section.
+fn taper(span: &Span, other: &Beam, x: f64) -> Beam {
+    let mut beam = other.clone();
+    let given = &span.beam;
+    let at = |profile: &Option<Profile>, value: &mut f64| {
+        if let Some(profile) = profile {
+            *value = profile.value(x);
+        }
+    };
+    at(&given.height_m, &mut beam.height_m);
+    at(&given.width_m, &mut beam.width_m);
+    at(&given.young_modulus_pa, &mut beam.young_modulus_pa);
+    at(&given.density_kg_m3, &mut beam.density_kg_m3);
+    at(&given.axial_stiffness_factor, &mut beam.axial_stiffness_factor);
+    at(&given.bending_stiffness_factor, &mut beam.bending_stiffness_factor);
+    let stiffness = |beam: &Beam| beam.young_modulus_pa * beam.height_m * beam.width_m;
+    let [stiffer, higher] = [stiffness(&beam) / stiffness(other), beam.height_m / other.height_m];
+    beam.neutral_axis_m *= higher;
+    at(&given.neutral_axis_m, &mut beam.neutral_axis_m);
+    beam.shear_stiffness_n = beam.shear_stiffness_n.map(|shear| shear * stiffer);
+    let may_be = |profile: &Option<Profile>, value: &mut Option<f64>| {
+        if let Some(profile) = profile {
+            *value = Some(profile.value(x));
+        }
+    };
+    may_be(&given.shear_stiffness_n, &mut beam.shear_stiffness_n);
+    may_be(&given.mass_factor, &mut beam.mass_factor);
+    may_be(&given.reference_axis_m, &mut beam.reference_axis_m);
+    beam
 }
 
 /// A case in JSON with the bladders of the upper row and of the lower one.

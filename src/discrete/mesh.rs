@@ -1,6 +1,7 @@
 //! Staggered mesh of the beam: positions at nodes; stretch, angle, N and V at cell midpoints; curvature and M at nodes.
 
 use std::iter;
+use std::ops::Range;
 
 use super::shapes::Cells;
 
@@ -31,8 +32,14 @@ pub struct BeamMesh {
     pub segment_lengths: Vec<f64>,
     /// Material coordinate of each node [m].
     coordinates: Vec<f64>,
+    /// Nodal loads of a uniform load on each smooth part, in units of its cells, as [`Self::lump`] distributes them.
+    pub weights: Vec<Vec<f64>>,
+    /// True for nodes inside of smooth parts.
+    within_parts: Vec<bool>,
     /// True if all cells have one length.
     pub uniform: bool,
+    /// Cells of the smooth parts of the beam: within a part, sections and cell lengths do not jump.
+    pub parts: Vec<Range<usize>>,
     /// True if the discretization error of the beam is of fourth order, [`super::residual::fourth_order`].
     pub fourth: bool,
 }
@@ -87,16 +94,61 @@ impl BeamMesh {
             borders: segment_lengths.windows(2).map(border).collect(),
             segment_lengths,
             coordinates,
+            weights: vec![],
+            within_parts: (0..=cells).map(|node| node > 0 && node < cells).collect(),
             uniform,
+            parts: iter::once(0..cells).collect(),
             fourth: false,
         }
     }
 
-    /// Sets the order of the mesh, 2 or 4. With fewer than six cells it remains 2, because the weights of both ends would overlap.
+    /// Divides the mesh into smooth parts at the beginning of segments.
+    #[must_use]
+    pub fn divided(self, jumps: &[usize]) -> Self {
+        let nodes = |ends: &[usize]| {
+            ends.iter()
+                .map(|segment| segment * self.cells_per_segment)
+                .collect::<Vec<_>>()
+        };
+        let mut within_parts = self.within_parts.clone();
+        nodes(jumps).into_iter().for_each(|node| within_parts[node] = false);
+        let [starts, ends] = [[&[0], jumps].concat(), [jumps, &[self.segments]].concat()].map(|all| nodes(&all));
+        Self {
+            within_parts,
+            parts: starts.into_iter().zip(ends).map(|(start, end)| start..end).collect(),
+            ..self
+        }
+    }
+
+    /// True for a node inside of a smooth part.
+    #[inline]
+    pub fn is_within_part(&self, node: usize) -> bool {
+        self.within_parts[node]
+    }
+
+    /// Is a cell the first, and is it the last, of a smooth part?
+    #[inline]
+    pub fn at_part_ends(&self, cell: usize) -> [bool; 2] {
+        [cell, cell + 1].map(|node| !self.within_parts[node])
+    }
+
+    /// Sets the order of the mesh, 2 or 4. It remains 2 with fewer than six cells, and with a part of one cell: the weights of both ends
+    /// would overlap.
     #[must_use]
     pub fn of_order(self, order: u8) -> Self {
+        let enough = self.cells >= Self::fewest(4) && self.parts.iter().all(|part| part.len() > 1);
+        let fourth = order == 4 && enough;
+        let weights = |part: &Range<usize>| {
+            let mut weights = vec![1.0; part.len() + 1];
+            (weights[0], weights[part.len()]) = (0.5, 0.5);
+            if fourth {
+                redistribute(&weights.clone(), &mut weights);
+            }
+            weights
+        };
         Self {
-            fourth: order == 4 && self.cells >= Self::fewest(4),
+            weights: self.parts.iter().map(weights).collect(),
+            fourth,
             ..self
         }
     }
@@ -112,19 +164,34 @@ impl BeamMesh {
     /// ∫ b u dθ = Σ B_i (u_i - δ²u_i/12) + O(h^4)      B_i = ∫ b hat_i dθ      δ²u_0 = δ²u_1, at the other end alike
     /// ```
     ///
-    /// Total and first moment are unchanged. A uniform load becomes `(3/8, 7/6, 23/24, 1, ..) h b` (Gregory).
+    /// in each smooth part; a load at a node between two parts belongs to both, by the lengths of their cells. Total and first moment are
+    /// unchanged. A uniform load becomes `(3/8, 7/6, 23/24, 1, ..) h b` (Gregory).
     pub fn lump(&self, values: &mut [f64]) {
         if !self.fourth {
             return;
         }
-        let last = values.len() - 1;
+        let share = |node: usize, side: usize| match node == 0 || node == self.cells {
+            true => 1.0,
+            false => self.sides_of_node(node).1[side],
+        };
         let given = values.to_vec();
-        for (i, part) in given.iter().enumerate() {
-            let middle = i.clamp(1, last - 1);
-            values[middle - 1] -= part / 12.0;
-            values[middle] += part / 6.0;
-            values[middle + 1] -= part / 12.0;
+        for &Range { start, end } in &self.parts {
+            let mut own = given[start..=end].to_vec();
+            own[0] *= share(start, 1);
+            own[end - start] *= share(end, 0);
+            redistribute(&own, &mut values[start..=end]);
         }
+    }
+
+    /// Shares of the segments on both sides of each node in its mass, from those in its length.
+    pub fn shares_in_mass(&self, shares: &[[f64; 2]]) -> Vec<[f64; 2]> {
+        let mut all = shares.to_vec();
+        for (pair, weights) in self.parts.windows(2).zip(self.weights.windows(2)) {
+            let left = weights[0][pair[0].len()] * self.lengths[pair[0].start];
+            let right = weights[1][0] * self.lengths[pair[1].start];
+            all[pair[1].start] = [left, right].map(|side| side / (left + right));
+        }
+        all
     }
 
     /// Weight of a node in its segment's mean moment: trapezoid `(1/2, 1, .., 1, 1/2)/K`.
@@ -225,5 +292,16 @@ impl BeamMesh {
             true => node as f64 / self.cells as f64,
             false => self.coordinates[node] / self.coordinates[self.cells],
         }
+    }
+}
+
+/// Adds the correction of [`BeamMesh::lump`] for the given nodal loads of a smooth part.
+fn redistribute(given: &[f64], values: &mut [f64]) {
+    let last = given.len() - 1;
+    for (i, part) in given.iter().enumerate() {
+        let middle = i.clamp(1, last - 1);
+        values[middle - 1] -= part / 12.0;
+        values[middle] += part / 6.0;
+        values[middle + 1] -= part / 12.0;
     }
 }

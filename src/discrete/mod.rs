@@ -22,6 +22,7 @@ pub mod resolution;
 mod sampled_load;
 pub mod sections;
 pub mod shapes;
+mod smooth_parts;
 pub mod sorted_links;
 pub mod start;
 pub mod statics;
@@ -294,8 +295,16 @@ impl System {
     }
 
     fn from_model(case: &Case, model: Model) -> Self {
-        let mesh = BeamMesh::new(model.length, spans::segment_lengths(case), case.mesh.cells_per_segment)
-            .of_order(case.mesh.order());
+        let lengths = spans::segment_lengths(case);
+        let jumps = smooth_parts::jumps(case, &model, &lengths);
+        let order = if smooth_parts::is_steep(&model) {
+            2
+        } else {
+            case.mesh.order()
+        };
+        let mesh = BeamMesh::new(model.length, lengths, case.mesh.cells_per_segment)
+            .divided(&jumps)
+            .of_order(order);
         let fluid = model
             .wet
             .as_ref()

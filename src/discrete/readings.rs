@@ -1,6 +1,7 @@
 //! Curvature and section forces for output, at nodes and midpoints of cells, also where the equations contain means.
 
 use std::borrow::Cow;
+use std::ops::Range;
 
 use super::residual::bending::pressure_curvature;
 use super::residual::fourth_order;
@@ -8,6 +9,7 @@ use super::residual::solid::node_stretch;
 use super::{System, TimeData, Workspace};
 use crate::case::schema::Effect;
 use crate::model::Kinematics;
+use crate::numerics::Planar;
 
 /// Output values of a fourth-order beam, [E77]; empty otherwise, and for values that equal those of the equations.
 #[derive(Clone, Debug, Default)]
@@ -75,9 +77,10 @@ fn together<'a>(part: &'a [f64], others: &[&[f64]]) -> Cow<'a, [f64]> {
     sum
 }
 
-/// Computes the [`Readings`] of an evaluated state. With loads weighted by [E78], the value at a node is `M - h² M''/12`, next to an end
-/// `M - h² M''/8`, and M itself at the ends. There, M'' is that of the third node, which no end affects. Curvature follows from M, normal
-/// forces from strains, as do shear forces if sections shear.
+/// Computes the [`FourthOrderReadings`] of an evaluated state. At a node, M and its part by N, [E79], differ from the moment by the loads,
+/// weighted by [E78]: with their part `M_b''` of M'', the sum is `M - h² M_b''/12`, next to an end `M - h² M_b''/8`, and M itself at the
+/// ends of each smooth part. There, `M_b''` is that of the third node, which no end affects. Curvature follows from M, normal forces from
+/// strains, as do shear forces if sections shear.
 pub fn read(system: &System, now: &TimeData, w: &mut Workspace<f64>) {
     if !system.mesh.fourth {
         return;
@@ -93,18 +96,38 @@ pub fn read(system: &System, now: &TimeData, w: &mut Workspace<f64>) {
 fn bending(system: &System, now: &TimeData, w: &Workspace<f64>, readings: &mut FourthOrderReadings) {
     let (mesh, moment) = (&system.mesh, &w.forces.moment);
     let last = mesh.cells;
+    readings.moment.copy_from_slice(moment);
+    if let arcs @ [_, ..] = &w.forces.arc_moment[..] {
+        readings
+            .moment
+            .iter_mut()
+            .zip(arcs)
+            .for_each(|(moment, arc)| *moment += arc);
+    }
+    // work of the change of the section force on the line of a cell, `h² M_b''`
+    let by_load = |node: usize| {
+        let force = w.forces.section[node] - w.forces.section[node - 1];
+        let line = (line(system, w, node) + line(system, w, node - 1)) * 0.5;
+        -mesh.lengths[node] * force.dot(line.normal())
+    };
+    let known = readings.moment.clone();
+    for (part, weights) in mesh.parts.iter().zip(&mesh.weights) {
+        let cells = part.len();
+        let third = if cells < 6 { 1 } else { 3 };
+        for i in 1..cells {
+            let at = i.clamp(third, cells - third);
+            let share = match [1, cells - 1].map(|beside| i == beside) {
+                [false, false] => 1.0 / 12.0,
+                [true, true] => 1.0 / 6.0,
+                _ => 1.0 / 8.0,
+            };
+            readings.moment[part.start + i] += share * by_load(part.start + at) / weights[at];
+        }
+    }
     for i in 0..=last {
-        let from_end = i.min(last - i);
-        let at = i.clamp(3, last - 3);
-        let bend = moment[at - 1] - moment[at] * 2.0 + moment[at + 1];
-        let share = match from_end {
-            0 => 0.0,
-            1 => 1.0 / 8.0,
-            _ => 1.0 / 12.0,
-        };
-        readings.moment[i] = moment[i] + share * bend;
-        let alpha =
-            readings.moment[i] / system.sections.bending[i] + pressure_curvature(system, w, i) + now.rest_curvature(i);
+        let alpha = readings.moment[i] / system.sections.bending_at(i)
+            + pressure_curvature(system, w, i)
+            + now.rest_curvature(i);
         let published = system.model.published();
         readings.curvature[i] = alpha / if published { node_stretch(w, i, last) } else { 1.0 };
     }
@@ -117,9 +140,18 @@ fn bending(system: &System, now: &TimeData, w: &Workspace<f64>, readings: &mut F
         return;
     }
     for c in 0..last {
-        let [known, read] = [moment, &readings.moment].map(|m| m[c] - m[c + 1]);
-        let more = (read - known) * w.shape.per_stretch[c] / mesh.shortest;
+        let [known, read] = [&known, &readings.moment].map(|m| m[c] - m[c + 1]);
+        let more = (read - known) * w.shape.per_stretch[c] / mesh.lengths[c];
         readings.shear[c] = w.forces.shear[c] + more;
+    }
+}
+
+/// Vector between the ends of a cell, per length, against which section forces have their moment.
+fn line(system: &System, w: &Workspace<f64>, cell: usize) -> Planar<f64> {
+    match system.model.kinematics {
+        Kinematics::FiniteRotation => w.shape.d3[cell],
+        Kinematics::SmallRotation => Planar::new(w.shape.d3[cell].x, 1.0),
+        _ => Planar::new(0.0, 1.0),
     }
 }
 
@@ -128,27 +160,36 @@ fn bending(system: &System, now: &TimeData, w: &Workspace<f64>, readings: &mut F
 const TURNED: [f64; 4] = [0.108_514_123, -0.023_372_891, -0.001_678_098, -0.000_120_482];
 
 fn stretch(system: &System, w: &Workspace<f64>, normal: &mut [f64]) {
-    let last = normal.len() - 1;
+    let parts = &system.mesh.parts;
     if system.model.effects.has(Effect::AxialStretch) {
         for (c, normal) in normal.iter_mut().enumerate() {
             *normal = system.sections.axial[c] * fourth_order::elastic_stretch(system, w, c);
         }
         if system.model.kinematics == Kinematics::FiniteRotation && w.shape.sections.angle.is_empty() {
             let (n, tangent) = (&w.forces.section, &w.shape.tangent);
-            let near = n[1].dot(tangent[1] - tangent[0]);
-            let far = n[last - 1].dot(tangent[last] - tangent[last - 1]);
-            for (c, share) in TURNED.into_iter().enumerate() {
-                normal[c] -= share * near;
-                normal[last - c] += share * far;
+            for &Range { start, end } in parts.iter().filter(|part| part.len() >= TURNED.len()) {
+                let last = end - 1;
+                let near = n[start + 1].dot(tangent[start + 1] - tangent[start]);
+                let far = n[last - 1].dot(tangent[last] - tangent[last - 1]);
+                for (c, share) in TURNED.into_iter().enumerate() {
+                    normal[start + c] -= share * near;
+                    normal[last - c] += share * far;
+                }
             }
         }
         return;
     }
-    // forces by statics are sums over nodes up to the middle of a cell; adds the missing part beside an end
+    // forces by statics are sums over nodes up to the middle of a cell; adds what the weights of nodes beside an end miss
     normal.copy_from_slice(&w.forces.normal);
-    let [near, far] = [normal[3] - normal[2], normal[last - 2] - normal[last - 3]];
-    normal[0] += near / 8.0;
-    normal[1] -= near / 24.0;
-    normal[last] -= far / 8.0;
-    normal[last - 1] += far / 24.0;
+    for (part, weights) in parts.iter().zip(&system.mesh.weights) {
+        let (cells, forces) = (part.len(), &w.forces.normal[part.clone()]);
+        let slope = |node: usize| (forces[node] - forces[node - 1]) / weights[node];
+        let near = 3.min(cells / 2);
+        let slopes = [slope(near), slope(cells - near)];
+        let mut sum = 0.0;
+        for (c, weight) in weights[..cells].iter().enumerate() {
+            sum += weight;
+            normal[part.start + c] += (c as f64 + 0.5 - sum) * slopes[usize::from(2 * c >= cells)];
+        }
+    }
 }

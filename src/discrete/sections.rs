@@ -1,23 +1,27 @@
 //! Stiffness and inertia of the beam's sections on a mesh.
 
 use super::BeamMesh;
+use super::smooth_parts::SmoothBending;
 use crate::model::surroundings::AmbientSection;
-use crate::model::{AmbientFluid, Model, NodeBending, Section};
+use crate::model::{Model, NodeBending, Section};
 
-/// `[E83]` Sections along the beam. A cell has the section of its segment. At a node between two segments the moment is continuous, so that
-/// compliances add, with those of their bladders:
+/// `[E83]` Sections along the beam. A cell has the section of its midpoint, a node that of its place. At a node between two segments with
+/// different sections the moment is continuous, so that compliances add, with those of their bladders:
 ///
 /// ```text
 /// 1/EI_i = s_l/EI_l + s_r/EI_r        α_p,i = s_l α_p,l + s_r α_p,r        m_i = s_l m_l + s_r m_r        s_l = h_l/(h_l + h_r)
 /// ```
 ///
-/// In a uniform beam all of them are equal.
+/// In a uniform beam all of them are equal. On a mesh of fourth order, stiffness and rotary inertia are means as strains are, over cells and
+/// over the hat functions of nodes, and the shares in m are those of [E78].
 #[derive(Clone, Debug)]
 pub struct MeshSections {
     /// `EA` of each cell [N].
     pub axial: Vec<f64>,
     /// `EI` of each node [N m^2].
     pub bending: Vec<f64>,
+    /// `EI` at the place of each node, where it is not that of `bending` [N m^2]; empty if it is everywhere.
+    bending_at_place: Vec<f64>,
     /// Moment-curvature laws of the nodes, [E91]; empty if all are linear.
     pub laws: Vec<NodeBending>,
     /// Distance of the farthest fiber from the beam's line at each node, the larger one between two segments [m].
@@ -39,6 +43,73 @@ pub struct MeshSections {
     pub ambient: Vec<AmbientSection>,
     /// Mass per length of each node less that of the displaced ambient fluid [kg/m].
     pub weighing: Vec<f64>,
+    /// Weights of bending on a mesh of fourth order, [E77].
+    pub smooth: SmoothBending,
+    /// True if values vary within segments.
+    pub graded: bool,
+}
+
+/// Places on the mesh, and their sections in a model.
+struct PlacedSections<'a> {
+    model: &'a Model,
+    mesh: &'a BeamMesh,
+}
+
+impl<'a> PlacedSections<'a> {
+    /// Section of a segment at a number of half cells from its beginning.
+    fn within(&self, segment: usize, half_cells: usize) -> &'a Section {
+        let within = self.model.within.get(segment).and_then(|within| within.get(half_cells));
+        within.unwrap_or_else(|| self.model.section_of(segment))
+    }
+
+    /// Value in the middle of each cell.
+    fn in_cells(&self, value: fn(&Section) -> f64) -> Vec<f64> {
+        let k = self.mesh.cells_per_segment;
+        let of = |cell: usize| value(self.within(cell / k, 2 * (cell % k) + 1));
+        (0..self.mesh.cells).map(of).collect()
+    }
+
+    /// Mean of each cell, on a mesh of second order its value in the middle.
+    fn means(&self, value: fn(&Section) -> f64) -> Vec<f64> {
+        let mut all = self.in_cells(value);
+        if self.mesh.fourth {
+            let k = self.mesh.cells_per_segment;
+            for (cell, middle) in all.iter_mut().enumerate() {
+                let ends = [0, 2].map(|end| value(self.within(cell / k, 2 * (cell % k) + end)));
+                if ends != [*middle; 2] {
+                    *middle = (ends[0] + 4.0 * *middle + ends[1]) / 6.0;
+                }
+            }
+        }
+        all
+    }
+
+    /// Sections on both sides of each node.
+    fn beside_nodes(&self) -> impl Iterator<Item = [&'a Section; 2]> {
+        let k = self.mesh.cells_per_segment;
+        (0..self.mesh.nodes).map(move |node| {
+            let (left, right) = self.mesh.segments_of_node(node);
+            [left, right].map(|segment| self.within(segment, 2 * (node - segment * k)))
+        })
+    }
+
+    /// Mean of both sides of each node with the given shares.
+    fn at_nodes(&self, shares: &[[f64; 2]], value: impl Fn(&Section) -> f64) -> Vec<f64> {
+        let each = self.beside_nodes().zip(shares);
+        each.map(|([left, right], shares)| match left == right {
+            true => value(left),
+            false => shares[0] * value(left) + shares[1] * value(right),
+        })
+        .collect()
+    }
+}
+
+/// In series: compliances add with their shares.
+pub fn in_series([left, right]: [f64; 2], shares: [f64; 2]) -> f64 {
+    match left == right {
+        true => left,
+        false => 1.0 / (shares[0] / left + shares[1] / right),
+    }
 }
 
 impl MeshSections {
@@ -56,64 +127,88 @@ impl MeshSections {
         (before / whole, before * (whole - before) / whole)
     }
 
+    /// `EI` at the place of a node [N m^2].
+    pub fn bending_at(&self, node: usize) -> f64 {
+        *self.bending_at_place.get(node).unwrap_or(&self.bending[node])
+    }
+
     /// Sections of a model on a mesh.
     pub fn new(model: &Model, mesh: &BeamMesh) -> Self {
-        let of = |segment: usize| model.section_of(segment);
-        let cells = |value: fn(&Section) -> f64| -> Vec<f64> {
-            (0..mesh.cells)
-                .map(|cell| value(of(cell / mesh.cells_per_segment)))
-                .collect()
-        };
-        let nodes = |mean: &dyn Fn([&Section; 2], [f64; 2]) -> f64| -> Vec<f64> {
-            let each = (0..mesh.nodes).map(|node| mesh.sides_of_node(node));
-            each.map(|(sides, shares)| mean(sides.map(of), shares)).collect()
-        };
-        let mean = |value: fn(&Section) -> f64| {
-            nodes(&|[left, right], shares| match left == right {
-                true => value(left),
-                false => shares[0] * value(left) + shares[1] * value(right),
-            })
-        };
-        let ambient = |around: &AmbientFluid| -> Vec<AmbientSection> {
-            let of = |segment: usize| *around.segments.get(segment).unwrap_or(&around.section);
-            let each = (0..mesh.nodes).map(|node| mesh.sides_of_node(node));
-            each.map(|([left, right], shares)| of(left).mean(of(right), shares))
-                .collect()
-        };
+        let placed = PlacedSections { model, mesh };
+        let shares: Vec<[f64; 2]> = (0..mesh.nodes).map(|node| mesh.sides_of_node(node).1).collect();
+        let masses = mesh.shares_in_mass(&shares);
+        let stiffness: Vec<[f64; 2]> = placed
+            .beside_nodes()
+            .map(|sides| sides.map(|section| section.bending_stiffness))
+            .collect();
+        let beside = stiffness.iter().zip(&shares);
+        let at_place: Vec<f64> = beside.map(|(sides, shares)| in_series(*sides, *shares)).collect();
+        let mut smooth = SmoothBending::default();
+        let mut bending = at_place.clone();
+        if mesh.fourth {
+            smooth = SmoothBending::new(model, mesh, &stiffness);
+            bending = std::mem::take(&mut smooth.means);
+        }
+        let offset = placed.in_cells(|section| section.offset);
+        let law = |segment: usize| model.bending.get(segment).unwrap_or(&model.bending[0]);
         Self {
-            axial: cells(|section| section.axial_stiffness),
-            bending: nodes(&|[left, right], shares| match left == right {
-                true => left.bending_stiffness,
-                false => 1.0 / (shares[0] / left.bending_stiffness + shares[1] / right.bending_stiffness),
-            }),
-            laws: match &model.bending[..] {
-                [] => vec![],
-                laws => {
-                    let law = |segment: usize| laws.get(segment).unwrap_or(&laws[0]);
-                    let each = (0..mesh.nodes).map(|node| mesh.sides_of_node(node));
-                    each.map(|([left, right], shares)| NodeBending::new(law(left), law(right), shares))
-                        .collect()
-                }
+            axial: placed.means(|section| section.axial_stiffness),
+            smooth,
+            bending_at_place: match bending == at_place {
+                true => vec![],
+                false => at_place,
             },
-            bending_of_cells: cells(|section| section.bending_stiffness),
-            farthest_fiber: nodes(&|[left, right], _| left.farthest_fiber().max(right.farthest_fiber())),
-            fiber_of_curvature: nodes(&|[left, right], shares| {
-                if left == right {
-                    return left.farthest_fiber();
-                }
-                let compliance = shares[0] / left.bending_stiffness + shares[1] / right.bending_stiffness;
-                let of = |side: &Section| side.farthest_fiber() / (side.bending_stiffness * compliance);
-                of(left).max(of(right))
-            }),
-            offset: match cells(|section| section.offset) {
-                all if all.iter().all(|d| *d == 0.0) => vec![],
-                all => all,
+            bending,
+            laws: match model.bending.is_empty() {
+                true => vec![],
+                false => (0..mesh.nodes)
+                    .map(|node| {
+                        let ([left, right], shares) = mesh.sides_of_node(node);
+                        NodeBending::new(law(left), law(right), shares)
+                    })
+                    .collect(),
             },
-            shear: cells(|section| section.shear_stiffness),
-            rotary: cells(Section::rotary_inertia),
-            ambient: model.surroundings.iter().flat_map(ambient).collect(),
-            mass: mean(|section| section.mass_per_length),
-            weighing: mean(|section| section.weighing_per_length),
+            bending_of_cells: placed.in_cells(|section| section.bending_stiffness),
+            farthest_fiber: placed
+                .beside_nodes()
+                .map(|[left, right]| left.farthest_fiber().max(right.farthest_fiber()))
+                .collect(),
+            fiber_of_curvature: placed
+                .beside_nodes()
+                .zip(&shares)
+                .map(|(sides, shares)| {
+                    let [left, right] = sides;
+                    if left == right {
+                        return left.farthest_fiber();
+                    }
+                    let mean = in_series(sides.map(|side| side.bending_stiffness), *shares);
+                    let of = |side: &Section| side.farthest_fiber() * mean / side.bending_stiffness;
+                    of(left).max(of(right))
+                })
+                .collect(),
+            offset: match offset.iter().all(|d| *d == 0.0) {
+                true => vec![],
+                false => offset,
+            },
+            shear: placed.means(|section| section.shear_stiffness),
+            rotary: placed.means(Section::rotary_inertia),
+            ambient: match &model.surroundings {
+                None => vec![],
+                Some(_) => (0..mesh.nodes)
+                    .zip(placed.beside_nodes())
+                    .map(|(node, [left, right])| {
+                        let [s_l, s_r] = masses[node];
+                        let (left, right) = (&left.ambient, &right.ambient);
+                        match left == right {
+                            true => *left,
+                            false => AmbientSection::mean(|value| s_l * value(left) + s_r * value(right)),
+                        }
+                    })
+                    .collect(),
+            },
+            mass: placed.at_nodes(&masses, |section| section.mass_per_length),
+            weighing: placed.at_nodes(&masses, Section::weighing_per_length),
+            graded: !model.within.is_empty(),
         }
     }
 }

@@ -39,10 +39,9 @@ pub fn velocities(w: &Workspace<f64>) -> Nodal {
 /// the position of the beam.
 pub fn spread(system: &System, [before, after]: [&TimeData; 2], w: &Workspace<f64>) -> Option<Nodal> {
     let l = &system.layout;
-    let around = system.model.surroundings.as_ref();
     // the surrounding fluid couples both directions of a node, rotating sections couple nodes
-    let coupled =
-        system.turns_with_its_line() || around.is_some_and(|s| s.section.added_mass > 0.0) || turned(system).is_some();
+    let added = system.model.section.ambient.added_mass > 0.0;
+    let coupled = system.turns_with_its_line() || added || turned(system).is_some();
     if !l.inertia || !coupled || system.model.kinematics == Kinematics::Bar {
         return None;
     }

@@ -115,10 +115,12 @@ fn of_solid(system: &System) -> f64 {
     least
 }
 
-/// Ratio of the frequencies of the shortest bending and axial waves with [E77] to those without.
+/// Ratio of the frequencies of the shortest bending and axial waves with [E77] to those without, or an upper limit of it.
 fn stiffer(system: &System) -> [f64; 2] {
     if system.mesh.fourth {
-        [(5.0_f64 / 3.0).sqrt(), (4.0_f64 / 3.0).sqrt()]
+        // beside a node between two parts, absolute weights add up to at most 2
+        let bending = if system.mesh.parts.len() > 1 { 2.0 } else { 5.0 / 3.0 };
+        [f64::sqrt(bending), f64::sqrt(4.0 / 3.0)]
     } else {
         [1.0; 2]
     }

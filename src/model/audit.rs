@@ -324,18 +324,17 @@ pub fn lasting(case: &Case, model: &Model, numbers: &BTreeMap<String, f64>) -> V
 
 /// Warnings about streams that the model covers only in part.
 fn stream(model: &Model) -> Vec<String> {
-    let Some((around, [across, along])) = (model.surroundings.as_ref()).and_then(|s| Some((s, s.stream.as_ref()?)))
-    else {
+    let Some([across, along]) = model.surroundings.as_ref().and_then(|around| around.stream.as_ref()) else {
         return vec![];
     };
     let mut all = vec![];
-    if !along.is_zero() && around.section.added_mass > 0.0 && model.effects.has(Effect::SolidInertia) {
+    if !along.is_zero() && model.section.ambient.added_mass > 0.0 && model.effects.has(Effect::SolidInertia) {
         all.push(Code::PartOfStream.warning(
             "a stream along the beam: the model leaves out half of its first-order force on the moving beam. Growth, flutter and damping by the \
              stream are not reliable",
         ));
     }
-    if around.section.drag == 0.0 && !across.is_zero() {
+    if model.section.ambient.drag == 0.0 && !across.is_zero() {
         all.push(Code::PartOfStream.warning(
             "a stream across the beam without drag (/surroundings/drag_coefficient is 0): only its acceleration acts on the beam. Give a coefficient \
              (2 for a plate)",

@@ -1,7 +1,7 @@
 //! The cross-section of the beam: mass, stiffness, rotary inertia, damping.
 
 use super::BendingLaw;
-use super::surroundings::displaced;
+use super::surroundings::AmbientSection;
 use crate::case::schema::{Beam, Bladders, Case, Viscoelasticity};
 use crate::case::spans::{self, SegmentValues};
 
@@ -34,8 +34,8 @@ pub struct Section {
     pub bending_damping_time: f64,
     /// `c` [N s/m^2].
     pub drag: f64,
-    /// `m` less the mass per length of the displaced ambient fluid [kg/m]; gravity acts on it.
-    pub weighing_per_length: f64,
+    /// Ambient fluid.
+    pub ambient: AmbientSection,
     /// `c_2` [N s^2/m^3].
     pub quadratic_drag: f64,
     /// `1 + Σ g`: instantaneous over long-term stiffness of a relaxing solid.
@@ -81,6 +81,16 @@ impl Section {
         values.iter().map(of).collect()
     }
 
+    /// Sections within the segments of tapers, at the ends and the midpoints of their cells alternately.
+    pub fn within_segments(case: &Case, values: &[SegmentValues]) -> Vec<Vec<Self>> {
+        let beams = spans::within(case, values, 2 * case.mesh.cells_per_segment);
+        let of = |(one, beams): (&SegmentValues, Vec<Beam>)| {
+            let each = beams.iter().map(|beam| Self::with_values(case, beam, one.present()));
+            each.collect()
+        };
+        values.iter().zip(beams).map(of).collect()
+    }
+
     /// Section with the mean mass and the mean compliances of segments of some lengths, the largest height and the largest offset: it
     /// has their extension by a constant force, and their deflection by a constant moment.
     pub fn mean(of: &[Self], lengths: &[f64]) -> Option<Self> {
@@ -109,10 +119,15 @@ impl Section {
             bending_stiffness: 1.0 / mean(&|one| 1.0 / one.bending_stiffness),
             steepest_bending: steepening / mean(&|one| 1.0 / one.bending_stiffness),
             shear_stiffness: 1.0 / mean(&|one| 1.0 / one.shear_stiffness),
-            weighing_per_length: mean(&|one| one.weighing_per_length),
+            ambient: AmbientSection::mean(|value| mean(&|one: &Self| value(&one.ambient))),
             gyration_radius_squared: mean(&Self::rotary_inertia) / mass,
             ..*first
         })
+    }
+
+    /// `m` less the mass per length of the displaced ambient fluid [kg/m]; gravity acts on it.
+    pub fn weighing_per_length(&self) -> f64 {
+        self.mass_per_length - self.ambient.displaced
     }
 
     /// `m y11` [kg m].
@@ -146,7 +161,8 @@ impl Section {
             bending_stiffness: beam.young_modulus_pa * second_moment,
             steepest_bending: law.map_or(beam.young_modulus_pa * second_moment, |law| law.steepest()),
             shear_stiffness: beam.shear_stiffness_n.unwrap_or(f64::INFINITY),
-            weighing_per_length: mass_per_length - displaced(case.surroundings.as_ref(), beam),
+            ambient: (case.surroundings.as_ref())
+                .map_or_else(AmbientSection::default, |around| AmbientSection::new(around, beam)),
             gyration_radius_squared: beam.density_kg_m3 / mass_per_length * second_moment,
             axial_damping_time: beam.damping.axial_time_s,
             bending_damping_time: beam.damping.bending_time_s,

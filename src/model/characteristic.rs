@@ -88,11 +88,11 @@ pub fn numbers_with(case: &Case, model: &Model, mathieu: Option<&MathieuTongue>)
             put("first_bending_frequency_relaxing_hz", omega / (2.0 * PI));
             put("first_bending_damping_ratio", decay / omega.hypot(decay));
         }
-        if let Some(around) = &model.surroundings {
-            put("added_mass_kg_m", around.section.added_mass);
+        if model.surroundings.is_some() {
+            put("added_mass_kg_m", s.ambient.added_mass);
             put(
                 "first_bending_frequency_in_fluid_hz",
-                dry / (1.0 + around.section.added_mass / m).sqrt(),
+                dry / (1.0 + s.ambient.added_mass / m).sqrt(),
             );
         }
     }

@@ -74,7 +74,7 @@ impl DistributedLoad {
     /// `[E5]` (A.6, A.7) with `b` in N/m: contact loads as given, body forces times `m`, gravity times `m` less the
     /// mass of displaced fluid.
     pub fn resolve(written: &Written, section: &Section) -> Vec<Self> {
-        Self::on(written, [section.mass_per_length, section.weighing_per_length])
+        Self::on(written, [section.mass_per_length, section.weighing_per_length()])
     }
 
     /// Loads on a mass, or a mass per length; `weighing` is its part subject to gravity.

@@ -68,6 +68,9 @@ pub struct Model {
     pub section: Section,
     /// Sections of the segments of a beam with spans; empty for a uniform beam.
     pub sections: Vec<Section>,
+    /// Sections within the segments of tapers, at the ends and the midpoints of their cells alternately; empty for a segment with constant
+    /// values, and for a beam without tapers.
+    pub within: Vec<Vec<Section>>,
     /// Moment-curvature laws of the segments, of a uniform beam one; empty if all are linear.
     pub bending: Vec<Arc<BendingLaw>>,
     /// Length `l_s` [m].
@@ -199,6 +202,7 @@ impl Model {
         Self {
             section,
             sections: Section::of_segments(case, &segments),
+            within: Section::within_segments(case, &segments),
             bending: BendingLaw::of_segments(case, &segments),
             length: case.beam.length_m,
             formulation: case.formulation,
@@ -253,6 +257,7 @@ impl Model {
         let mut model = self.clone();
         model.section = self.sections[segment];
         model.sections.clear();
+        model.within.clear();
         if let Some(law) = self.bending.get(segment) {
             model.bending = vec![law.clone()];
         }

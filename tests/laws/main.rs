@@ -28,6 +28,7 @@ mod scene;
 mod secant;
 mod segments;
 mod sloshing;
+mod smooth_parts;
 mod spans;
 mod surroundings;
 mod tubes;

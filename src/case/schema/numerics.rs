@@ -63,7 +63,7 @@ pub struct Mesh {
     #[schemars(range(min = 1, max = 1000))]
     pub cells_per_bladder: usize,
     /// Order of what the beam's cells leave out, 2 or 4: halved cells leave a quarter, or a sixteenth. On fewer than
-    /// six cells it is 2. Absent: 2, and with `--accuracy` 4 where the beam has it.
+    /// six cells, or on one cell between two jumps of the section, it is 2. Absent: 2, and with `--accuracy` 4 where the beam has it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(extend("enum" = [2, 4]))]
     pub order: Option<u8>,

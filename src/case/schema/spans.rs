@@ -75,7 +75,7 @@ impl SpanRows {
 }
 
 /// Values of the solid in a span, as in `beam`. Each but the law of the moment is a number, or a function of the place within the span from
-/// 0 to 1, which is evaluated in the middle of each segment.
+/// 0 to 1, which is evaluated at the nodes and cells of the mesh.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct SpanBeam {
@@ -116,7 +116,7 @@ pub struct SpanBeam {
 
 impl SpanBeam {
     /// Given values, with their keys.
-    fn given(&self) -> impl Iterator<Item = (&'static str, &Profile)> {
+    pub fn given(&self) -> impl Iterator<Item = (&'static str, &Profile)> {
         given([
             ("height_m", &self.height_m),
             ("width_m", &self.width_m),

@@ -145,7 +145,8 @@ fn bending(
                 let (stretch, stretch_rate) = stretches(beside);
                 let alpha_rate = stretch * w.shape.kappa_rate[beside] + stretch_rate * w.shape.kappa[beside];
                 let free_rate = by_pressure + now.rest_curvature_rate(beside);
-                elastic_rate = (2.0 * elastic_rate + alpha_rate - free_rate) / 3.0;
+                let [own, other] = system.sections.smooth.end_weights[usize::from(i > 0)];
+                elastic_rate = own * elastic_rate + other * (alpha_rate - free_rate);
             }
             let alpha_rate = elastic_rate + free_rate - w.shape.kappa[i] * stretch_rate;
             relaxation::curvature_rate(system, now, w, i, alpha_rate, bent * stretch)
@@ -282,10 +283,10 @@ pub fn energies(system: &System, now: &TimeData, w: &Workspace<f64>) -> StoredEn
         }
     }
     if mesh.fourth && sheared {
-        e.bending += 0.5 * mesh.shortest * system.sections.shear[0] * fourth_order::squares(&w.shape.sections.shear);
+        let (sections, shape) = (&system.sections, &w.shape);
+        e.bending += fourth_order::energy_of_cells(system, &sections.shear, &shape.sections.shear);
         if system.model.effects.has(Effect::RotaryInertia) {
-            let inertia = system.sections.rotary[0];
-            e.rotary += 0.5 * mesh.shortest * inertia * fourth_order::squares(&w.shape.angle_rate);
+            e.rotary += fourth_order::energy_of_cells(system, &sections.rotary, &shape.angle_rate);
         }
     }
     e

@@ -101,7 +101,7 @@ fn inert(system: &System) -> bool {
 
 fn around(system: &System) -> bool {
     let around = system.model.surroundings.as_ref();
-    around.is_some_and(|around| around.section.added_mass > 0.0 && around.stream.is_none())
+    around.is_some_and(|around| around.stream.is_none()) && system.model.section.ambient.added_mass > 0.0
 }
 
 fn nonlinear(system: &System) -> bool {

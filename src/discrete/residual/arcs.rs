@@ -3,7 +3,7 @@
 use super::fourth_order::{arc, bends_its_cells, shares};
 use crate::case::schema::Effect;
 use crate::discrete::workspace::BeamShape;
-use crate::discrete::{System, TimeData, Workspace};
+use crate::discrete::{BeamMesh, System, TimeData, Workspace};
 use crate::model::Kinematics;
 use crate::numerics::{Planar, Scalar};
 
@@ -16,7 +16,7 @@ use crate::numerics::{Planar, Scalar};
 /// ```
 ///
 /// with an error of order `h^4`: in the mean of r' = λ e_t + γ e_n, the term `h²/12 θ' (γ', -λ')` is the variation of λ and γ while
-/// sections rotate. An end, and a node between segments whose stretches by pressure differ, has no Δ; that of the cell's other node is
+/// sections rotate. A node at an end of a smooth part, and one between segments whose stretches by pressure differ, has no Δ; that of the cell's other node is
 /// used. Forces and moments are derivatives of the energy: those of [E79] with `N λ + V γ`, and
 ///
 /// ```text
@@ -55,7 +55,7 @@ pub fn strains<T: Scalar>(system: &System, now: &TimeData, w: &mut Workspace<T>)
 #[inline]
 fn change<T: Scalar>(system: &System, shape: &BeamShape<T>, node: usize) -> Planar<T> {
     let line = &shape.sections.line;
-    (line[node] - line[node - 1]).times(shape.kappa[node] * (system.mesh.shortest / 24.0))
+    (line[node] - line[node - 1]).times(shape.kappa[node] * (system.mesh.lengths[node] / 24.0))
 }
 
 /// Cells adjacent to an inner node, with its weight in each.
@@ -69,11 +69,11 @@ fn beside(system: &System, node: usize) -> [(usize, f64); 2] {
     [(node - 1, weight(node, node - 1)), (node, weight(node, node + 1))]
 }
 
-/// True if λ is smooth at a node.
+/// True if λ and γ are smooth at a node.
 fn smooth(system: &System, node: usize) -> bool {
     let mesh = &system.mesh;
     let pressed = system.fluid.is_some() && system.model.effects.has(Effect::PressureToStretch);
-    node > 0 && node < mesh.cells && !(pressed && node.is_multiple_of(mesh.cells_per_segment))
+    mesh.is_within_part(node) && !(pressed && node.is_multiple_of(mesh.cells_per_segment))
 }
 
 /// Forces conjugate to [`strains`]: adds the effect of the elastic N and V to the moments of nodes and to the section
@@ -89,7 +89,7 @@ pub fn forces<T: Scalar>(system: &System, now: &TimeData, w: &mut Workspace<T>) 
         for node in 1..mesh.cells {
             let mut both = T::zero();
             for cell in [node - 1, node] {
-                both += forces.normal[cell] * line_share(mesh.cells, cell, node);
+                both += forces.normal[cell] * line_share(mesh, cell, node);
             }
             let force = both * (shape.d3[node].x - shape.d3[node - 1].x) * (1.0 / 24.0);
             forces.arc_section[node].x += force;
@@ -100,14 +100,15 @@ pub fn forces<T: Scalar>(system: &System, now: &TimeData, w: &mut Workspace<T>) 
     forces.arc_moment.fill(T::zero());
     for c in 0..mesh.cells {
         let (line, force) = (shape.sections.line[c], Planar::new(forces.shear[c], forces.normal[c]));
-        let both = line.dot(force) * (mesh.shortest * mesh.shortest / 24.0);
+        let length = mesh.lengths[c];
+        let both = line.dot(force) * (length * length / 24.0);
         for (node, share) in [c, c + 1].into_iter().zip(shares(system, now, c)) {
-            forces.arc_moment[node] += shape.kappa[node] * both * (share * mesh.shortest / mesh.node_lengths[node]);
+            forces.arc_moment[node] += shape.kappa[node] * both * (share * length / mesh.node_lengths[node]);
         }
         forces.arc_section[c] = force.times(arc(system, now, &shape.kappa, c));
     }
-    let per_node = mesh.shortest / 24.0;
     for node in 1..mesh.cells {
+        let per_node = mesh.lengths[node] / 24.0;
         let mut both = Planar::zero();
         for (cell, share) in beside(system, node) {
             both += Planar::new(forces.shear[cell], forces.normal[cell]) * share;
@@ -125,7 +126,7 @@ pub fn forces<T: Scalar>(system: &System, now: &TimeData, w: &mut Workspace<T>) 
 pub fn of_line<T: Scalar>(system: &System, shape: &BeamShape<T>, cell: usize) -> T {
     let mut sum = T::zero();
     for node in [cell, cell + 1] {
-        let share = line_share(system.mesh.cells, cell, node);
+        let share = line_share(&system.mesh, cell, node);
         if share > 0.0 {
             sum += (shape.d3[node].x - shape.d3[node - 1].x).squared() * (share / 48.0);
         }
@@ -135,9 +136,9 @@ pub fn of_line<T: Scalar>(system: &System, shape: &BeamShape<T>, cell: usize) ->
 
 /// Rate of this relative excess [1/s].
 pub fn rate_of_line(system: &System, w: &Workspace<f64>, cell: usize) -> f64 {
-    let turned = |c: usize| (w.motion.v[c + 1].x - w.motion.v[c].x) / system.mesh.shortest;
+    let turned = |c: usize| (w.motion.v[c + 1].x - w.motion.v[c].x) / system.mesh.lengths[c];
     let of = |node: usize| {
-        let share = line_share(system.mesh.cells, cell, node);
+        let share = line_share(&system.mesh, cell, node);
         if share == 0.0 {
             return 0.0;
         }
@@ -146,12 +147,12 @@ pub fn rate_of_line(system: &System, w: &Workspace<f64>, cell: usize) -> f64 {
     of(cell) + of(cell + 1)
 }
 
-/// Weight of a node in [`of_line`]; zero at an end, where `u1''` is unknown.
+/// Weight of a node in [`of_line`]; zero at an end of a smooth part, where `u1''` of the cell is unknown.
 #[inline]
-fn line_share(cells: usize, cell: usize, node: usize) -> f64 {
-    if node == 0 || node == cells {
+fn line_share(mesh: &BeamMesh, cell: usize, node: usize) -> f64 {
+    if !mesh.is_within_part(node) {
         0.0
-    } else if cell == 0 || cell + 1 == cells {
+    } else if mesh.at_part_ends(cell) != [false; 2] {
         2.0
     } else {
         1.0

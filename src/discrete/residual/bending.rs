@@ -61,7 +61,7 @@ pub fn moments<T: Scalar>(system: &System, now: &TimeData, w: &mut Workspace<T>)
         }
     }
     if system.mesh.fourth {
-        fourth_order::moments(&system.mesh, now, &mut w.forces.moment);
+        fourth_order::moments(system, now, &mut w.forces.moment);
     }
     relaxation::moments(system, now, w);
     if section.bends_viscously() {
@@ -76,7 +76,7 @@ pub fn moments<T: Scalar>(system: &System, now: &TimeData, w: &mut Workspace<T>)
             w.forces.viscous_moment[i] = rate * (ei * section.bending_damping_time);
         }
         if system.mesh.fourth {
-            fourth_order::moments(&system.mesh, now, &mut w.forces.viscous_moment);
+            fourth_order::moments(system, now, &mut w.forces.viscous_moment);
         }
     }
 }
@@ -113,7 +113,7 @@ fn given_moment<T: Scalar>(system: &System, now: &TimeData, node: usize, w: &mut
     }
     let mut alpha = free_curvature + elastic / T::constant(ei);
     if system.mesh.fourth {
-        alpha = free_curvature + (elastic * (2.0 / ei) + fourth_order::beside(system, w, node)) * (1.0 / 3.0);
+        alpha = free_curvature + fourth_order::of_end(system, w, node, elastic);
     }
     if w.relaxed.curvature.is_empty() {
         w.shape.kappa[node] = if published { alpha / stretch } else { alpha };

@@ -174,8 +174,10 @@ pub fn normal_forces<T: Scalar>(system: &System, now: &TimeData, w: &mut Workspa
         let k = system.mesh.cells_per_segment;
         let segments = w.forces.normal.chunks_exact_mut(k).zip(ea.chunks_exact(k));
         for ((forces, ea), stretch) in segments.zip(&w.coupling.pressure_stretch) {
-            let free = *stretch * ea[0];
-            forces.iter_mut().for_each(|force| *force -= free);
+            forces
+                .iter_mut()
+                .zip(ea)
+                .for_each(|(force, ea)| *force -= *stretch * *ea);
         }
     }
     if section.axial_damping_time > 0.0 {
@@ -186,9 +188,9 @@ pub fn normal_forces<T: Scalar>(system: &System, now: &TimeData, w: &mut Workspa
     }
     eccentric::normal_forces(system, now, w);
     if system.mesh.fourth {
-        fourth_order::of_cells(&mut w.forces.normal);
+        fourth_order::of_cells(system, ea, &mut w.forces.normal);
         if section.axial_damping_time > 0.0 {
-            fourth_order::of_cells(&mut w.forces.viscous_normal);
+            fourth_order::of_cells(system, ea, &mut w.forces.viscous_normal);
         }
     }
 }

@@ -96,14 +96,14 @@ fn shears<T: Scalar>(system: &System, now: &TimeData, w: &mut Workspace<T>) {
         *force = *shear * *kga;
     }
     if system.mesh.fourth {
-        fourth_order::of_cells(&mut w.forces.shear);
+        fourth_order::of_cells(system, stiffness, &mut w.forces.shear);
         arcs::forces(system, now, w);
         if time > 0.0 {
             let rates = w.shape.sections.shear_rate.iter().zip(stiffness);
             for (force, (rate, kga)) in w.forces.viscous_shear.iter_mut().zip(rates) {
                 *force = *rate * (*kga * time);
             }
-            fourth_order::of_cells(&mut w.forces.viscous_shear);
+            fourth_order::of_cells(system, stiffness, &mut w.forces.viscous_shear);
             for (force, viscous) in w.forces.shear.iter_mut().zip(&w.forces.viscous_shear) {
                 *force += *viscous;
             }
@@ -174,21 +174,19 @@ impl<T: Scalar> Sections<T> {
 
 /// Balance of moments of each section.
 pub fn rows<T: Scalar>(system: &System, w: &Workspace<T>, r: &mut [T]) {
-    let resists = system.model.effects.has(Effect::RotaryInertia);
-    let inertia = |c: usize| system.sections.rotary[c] * system.mesh.lengths[c];
-    for (c, row) in system.layout.turning.moments().enumerate() {
-        r[row] = -w.forces.turning[c];
-        if resists {
-            r[row] += w.shape.sections.acceleration[c] * inertia(c);
-        }
+    let turning = system.layout.turning.moments();
+    for (row, moment) in turning.clone().zip(&w.forces.turning) {
+        r[row] = -*moment;
     }
-    if resists && system.mesh.fourth {
-        let first = system.layout.turning.moments().start;
-        let last = system.mesh.cells - 1;
-        for (c, pair) in w.shape.sections.acceleration.windows(2).enumerate() {
-            let step = (pair[1] - pair[0]) * (inertia(c) * fourth_order::cell_weight(c, last));
-            r[first + c] -= step;
-            r[first + c + 1] += step;
-        }
+    if turning.is_empty() || !system.model.effects.has(Effect::RotaryInertia) {
+        return;
+    }
+    let rotary = &system.sections.rotary;
+    let momentum = |c: usize| w.shape.sections.acceleration[c] * (rotary[c] * system.mesh.lengths[c]);
+    for (c, row) in turning.clone().enumerate() {
+        r[row] += momentum(c);
+    }
+    if system.mesh.fourth {
+        fourth_order::each_step(system, rotary, momentum, |c, step| r[turning.start + c] += step);
     }
 }

@@ -151,7 +151,8 @@ pub(super) fn growing(case: &Case, mut model: Model, stage: &Stage) -> error::Re
     }
     model.still = true;
     model.relaxation.clear();
-    for section in model.sections.iter_mut().chain([&mut model.section]) {
+    let within = model.within.iter_mut().flatten();
+    for section in model.sections.iter_mut().chain(within).chain([&mut model.section]) {
         (section.drag, section.axial_damping_time, section.bending_damping_time) = (0.0, 0.0, 0.0);
     }
     if let Some(wet) = model.wet.as_mut().filter(|wet| wet.flows) {
