@@ -59,10 +59,11 @@ impl Reading {
     }
 }
 
-/// Index ranges of the differentiated outputs: equations, moments of nodes, normal forces of cells, strains.
+/// Index ranges of the differentiated outputs: equations, moments of nodes and of both sides of some, normal forces of cells, strains.
 #[derive(Clone, Copy, Debug)]
 struct Places {
     moments: usize,
+    sides: usize,
     forces: usize,
     strains: usize,
     len: usize,
@@ -71,10 +72,12 @@ struct Places {
 impl Places {
     fn new(system: &System) -> Self {
         let moments = system.layout.len;
-        let forces = moments + system.mesh.nodes;
+        let sides = moments + system.mesh.nodes;
+        let forces = sides + 2 * system.sections.offset_borders.len();
         let strains = forces + system.mesh.cells;
         Self {
             moments,
+            sides,
             forces,
             strains,
             len: strains + 2 * system.model.wet.as_ref().map_or(0, |wet| wet.per_row),
@@ -113,6 +116,7 @@ impl ChainRule {
         };
         stand(0, &on.equations, &is_mean);
         stand(places.moments, &on.moments, &|_| own.mean_moment.is_empty());
+        stand(places.sides, &on.side_moments, &|_| own.mean_moment.is_empty());
         stand(places.forces, &on.forces, &|_| own.mean_force.is_empty());
         stand(places.strains, &on.strains, &|_| false);
         let (colour, count) = colour::colours(&Pattern::from_columns(&columns));
@@ -125,7 +129,7 @@ impl ChainRule {
         // for each strain: rows and indices of ∂F/∂s, columns and indices of ds/dy
         let mut by_strain: Vec<Vec<(usize, usize)>> = vec![vec![]; on.strains.len()];
         let mut of_strain = by_strain.clone();
-        let k = system.mesh.cells_per_segment;
+        let (k, borders) = (system.mesh.cells_per_segment, &system.sections.offset_borders);
         for (column, rows) in columns.iter().enumerate().filter(|(_, rows)| !rows.is_empty()) {
             let lane = colour[column] % LANES;
             let sweep = &mut chain.sweeps[colour[column] / LANES];
@@ -157,12 +161,19 @@ impl ChainRule {
                 };
                 if row < places.moments {
                     read(row, 1.0);
-                } else if row < places.forces {
+                } else if row < places.sides {
                     let node = row - places.moments;
+                    if borders.binary_search_by_key(&node, |border| border.node).is_ok() {
+                        continue;
+                    }
                     let (left, right) = system.mesh.segments_of_node(node);
                     for j in left..=right {
                         read(own.mean_moment.start + j, -system.mesh.moment_weight(node - j * k));
                     }
+                } else if row < places.forces {
+                    let side = row - places.sides;
+                    let j = borders[side / 2].node / k - 1 + side % 2;
+                    read(own.mean_moment.start + j, -system.mesh.moment_weight(0));
                 } else if row < places.strains {
                     let cell = row - places.forces;
                     read(own.mean_force.start + cell / k, -1.0 / k as f64);
@@ -218,7 +229,8 @@ impl ChainRule {
             }
             residual::beyond_strains(system, now, w);
             residual::equations(system, now, &b.y, &b.yp, w, &mut b.residual[..places.moments]);
-            b.residual[places.moments..places.forces].copy_from_slice(&w.forces.moment);
+            b.residual[places.moments..places.sides].copy_from_slice(&w.forces.moment);
+            b.residual[places.sides..places.forces].copy_from_slice(&w.forces.side_moment);
             b.residual[places.forces..places.strains].copy_from_slice(&w.forces.normal);
             sweep.entries.iter().for_each(|one| one.add(&b.residual, values));
             sweep.parts.iter().for_each(|one| one.add(&b.residual, &mut self.parts));

@@ -55,6 +55,8 @@ pub struct Dependence {
     pub equations: Vec<Vec<u32>>,
     /// Moments of nodes.
     pub moments: Vec<Vec<u32>>,
+    /// Moments of both sides of nodes where neutral axes jump.
+    pub side_moments: Vec<Vec<u32>>,
     /// Normal forces of cells.
     pub forces: Vec<Vec<u32>>,
     /// The strains by pressure, in the order of [`crate::discrete::workspace::Coupling::strains_mut`].
@@ -91,6 +93,7 @@ impl Dependence {
             let on = Self {
                 equations: known(&residual),
                 moments: known(&workspace.forces.moment),
+                side_moments: known(&workspace.forces.side_moment),
                 forces: known(&workspace.forces.normal),
                 strains: known(&strains),
             };

@@ -1,6 +1,7 @@
 //! Stiffness and inertia of the beam's sections on a mesh.
 
 use super::BeamMesh;
+use super::residual::eccentric::Border;
 use super::smooth_parts::SmoothBending;
 use crate::model::surroundings::AmbientSection;
 use crate::model::{Model, NodeBending, Section};
@@ -31,6 +32,8 @@ pub struct MeshSections {
     pub fiber_of_curvature: Vec<f64>,
     /// `d` of each cell, [E89] [m]; empty if all neutral axes are at the beam's line.
     pub offset: Vec<f64>,
+    /// Nodes where d or EI jumps in a beam with `offset`, between parts of two or more cells; empty with moment-curvature laws.
+    pub offset_borders: Vec<Border>,
     /// `EI` of each cell [N m^2].
     pub bending_of_cells: Vec<f64>,
     /// `kGA` of each cell [N]; infinite without shear.
@@ -186,6 +189,19 @@ impl MeshSections {
                     of(left).max(of(right))
                 })
                 .collect(),
+            offset_borders: match model.bending.is_empty() && offset.iter().any(|d| *d != 0.0) {
+                false => vec![],
+                true => mesh
+                    .parts
+                    .windows(2)
+                    .filter(|pair| pair.iter().all(|part| part.len() > 1))
+                    .map(|pair| pair[1].start)
+                    .map(|node| Border {
+                        node,
+                        bending: stiffness[node],
+                    })
+                    .collect(),
+            },
             offset: match offset.iter().all(|d| *d == 0.0) {
                 true => vec![],
                 false => offset,

@@ -55,6 +55,8 @@ pub struct BeamShape<T> {
     pub angle_rate: Vec<T>,
     /// Curvature `kappa` [1/m].
     pub kappa: Vec<T>,
+    /// Curvature of the left and the right side of nodes where neutral axes jump [1/m].
+    pub side_curvature: Vec<[T; 2]>,
     /// `d kappa/dt` [1/(m s)].
     pub kappa_rate: Vec<T>,
     /// Rotation of sections that shear.
@@ -128,6 +130,8 @@ pub struct Forces<T> {
     pub arc_moment: Vec<T>,
     /// Moment of the normal forces about neutral axes beside the beam's line at nodes, [E89] [N m].
     pub offset_moment: Vec<T>,
+    /// Moments about both neutral axes, left and right, at nodes where they jump [N m].
+    pub side_moment: Vec<T>,
     /// Addition to the moment by the section's energy at finite strain [N m]; empty without it.
     pub nonlinear_moment: Vec<T>,
     /// Addition to the normal force by the section's energy at finite strain [N].
@@ -321,6 +325,7 @@ impl<T: Scalar> Workspace<T> {
                 stretch_rate: zeros(c),
                 angle_rate: zeros(c),
                 kappa: zeros(n),
+                side_curvature: vec![[T::zero(); 2]; system.sections.offset_borders.len()],
                 kappa_rate: zeros(n),
                 sections: Sections {
                     angle: zeros(sheared),
@@ -354,6 +359,7 @@ impl<T: Scalar> Workspace<T> {
                 relaxing_shear: zeros(relaxation.shear.len().min(c)),
                 turning: zeros(sheared),
                 arc_moment: zeros(if bent { n } else { 0 }),
+                side_moment: zeros(2 * system.sections.offset_borders.len()),
                 offset_moment: zeros(if system.sections.offset.is_empty() { 0 } else { n }),
                 nonlinear_moment: zeros(nonlinear * n),
                 nonlinear_normal: zeros(nonlinear * c),

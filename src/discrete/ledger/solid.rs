@@ -251,6 +251,8 @@ pub fn energies(system: &System, now: &TimeData, w: &Workspace<f64>) -> StoredEn
         }
         e.bending += if mesh.fourth {
             fourth_order::of_bending(system, now, w, i)
+        } else if let Some(energy) = eccentric::side_energy(system, w, i) {
+            energy
         } else if let Some(law) = system.sections.laws.get(i) {
             length * law.at(elastic_curvature(system, now, w, i)).energy
         } else {

@@ -1,7 +1,7 @@
 //! Moments, and the shear forces of sections that remain perpendicular to the beam.
 
 use super::solid::node_stretch;
-use super::{fourth_order, relaxation};
+use super::{eccentric, fourth_order, relaxation};
 use crate::case::schema::Effect;
 use crate::discrete::{System, TimeData, Workspace};
 use crate::numerics::Scalar;
@@ -60,6 +60,7 @@ pub fn moments<T: Scalar>(system: &System, now: &TimeData, w: &mut Workspace<T>)
             given_moment(system, now, node, w);
         }
     }
+    eccentric::side_moments(system, now, w);
     if system.mesh.fourth {
         fourth_order::moments(system, now, &mut w.forces.moment);
     }
@@ -205,6 +206,15 @@ pub fn pressure_curvature<T: Scalar>(system: &System, w: &Workspace<T>, node: us
     } else {
         let shares = system.mesh.borders[left];
         w.coupling.pressure_curvature[left] * shares[0] + w.coupling.pressure_curvature[right] * shares[1]
+    }
+}
+
+/// `alpha_p` of a segment.
+#[inline]
+pub fn segment_curvature<T: Scalar>(system: &System, w: &Workspace<T>, segment: usize) -> T {
+    match presses(system) {
+        true => w.coupling.pressure_curvature[segment],
+        false => T::zero(),
     }
 }
 

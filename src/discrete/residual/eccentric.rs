@@ -1,6 +1,6 @@
 //! Sections whose neutral axis is beside the beam's line.
 
-use super::bending::{pressure_curvature, relative_stiffness};
+use super::bending::{pressure_curvature, relative_stiffness, segment_curvature};
 use crate::case::schema::Effect;
 use crate::discrete::{System, TimeData, Workspace};
 use crate::numerics::Scalar;
@@ -21,14 +21,19 @@ use crate::numerics::Scalar;
 /// ```
 ///
 /// and the viscous part of the force has the curvature rate of the neighboring node.
+///
+/// Where d or EI jumps, the curvature of both sides of the node differs, `κ_i = s_l κ_l + s_r κ_r`. Each side is such an end, with the
+/// same moment M, [`Border`].
 pub fn end_curvatures<T: Scalar>(system: &System, now: &TimeData, w: &mut Workspace<T>) {
     if system.sections.offset.is_empty() {
         return;
     }
+    for k in 0..system.sections.offset_borders.len() {
+        w.shape.side_curvature[k] = system.sections.offset_borders[k].curvatures(system, now, w);
+    }
     for end in ends(system, now) {
         let [bending, axial] = end.stiffness(system);
-        let force = (w.shape.strain[end.cell] - pressure_stretch(system, w, end.cell)) * axial
-            + (w.shape.kappa[end.beside] * 0.5 - T::constant(mean_rest(now, 0, end.cell))) * (axial * end.offset);
+        let force = force_by_neighbor(system, now, w, end.cell, end.beside, [axial, end.offset]);
         let free = pressure_curvature(system, w, end.node) + T::constant(now.rest_curvature(end.node));
         if let Some(law) = system.sections.laws.get(end.node) {
             let parallel = 0.5 * axial * end.offset * end.offset;
@@ -44,11 +49,94 @@ pub fn end_curvatures<T: Scalar>(system: &System, now: &TimeData, w: &mut Worksp
     }
 }
 
+/// Normal force of a cell without the curvature of one of its nodes; `beside` is the other node, `[axial, offset]` are EA and d.
+#[inline]
+fn force_by_neighbor<T: Scalar>(
+    system: &System,
+    now: &TimeData,
+    w: &Workspace<T>,
+    cell: usize,
+    beside: usize,
+    [axial, offset]: [f64; 2],
+) -> T {
+    let bent = w.shape.kappa[beside] * 0.5 - T::constant(mean_rest(now, 0, cell));
+    (w.shape.strain[cell] - pressure_stretch(system, w, cell)) * axial + bent * (axial * offset)
+}
+
+/// Node at which d or EI jumps, between parts of at least two cells.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Border {
+    /// Node.
+    pub node: usize,
+    /// EI on the left and on the right [N m^2].
+    pub bending: [f64; 2],
+}
+
+impl Border {
+    /// Cells beside the node, and their nodes beyond it.
+    fn sides(&self) -> [[usize; 2]; 2] {
+        [[self.node - 1, self.node - 1], [self.node, self.node + 1]]
+    }
+
+    /// Curvature without moment of both sides of the node.
+    fn free<T: Scalar>(&self, system: &System, now: &TimeData, w: &Workspace<T>) -> [T; 2] {
+        let rest = T::constant(now.rest_curvature(self.node));
+        let (left, right) = system.mesh.segments_of_node(self.node);
+        [left, right].map(|segment| segment_curvature(system, w, segment) + rest)
+    }
+
+    /// Curvatures of both sides: `κ_s = (M + B_s)/A_s`, with `A = EI + EA d²/2` and B as in [`end_curvatures`].
+    fn curvatures<T: Scalar>(&self, system: &System, now: &TimeData, w: &Workspace<T>) -> [T; 2] {
+        let (free, shares) = (self.free(system, now, w), system.mesh.sides_of_node(self.node).1);
+        let sides = self.sides();
+        let of = |side: usize| {
+            let [cell, beside] = sides[side];
+            let (axial, offset) = (system.sections.axial[cell], system.sections.offset[cell]);
+            let force = force_by_neighbor(system, now, w, cell, beside, [axial, offset]);
+            let stiffness = self.bending[side] + 0.5 * axial * offset * offset;
+            ((free[side] * self.bending[side] - force * offset) * (1.0 / stiffness), 1.0 / stiffness)
+        };
+        let [left, right] = [of(0), of(1)];
+        let compliance = shares[0] * left.1 + shares[1] * right.1;
+        let moment = (w.shape.kappa[self.node] - left.0 * shares[0] - right.0 * shares[1]) * (1.0 / compliance);
+        [left, right].map(|(curvature, compliance)| curvature + moment * compliance)
+    }
+}
+
+/// Sets the moments about both neutral axes at nodes where they jump, and their mean.
+pub fn side_moments<T: Scalar>(system: &System, now: &TimeData, w: &mut Workspace<T>) {
+    for (k, border) in system.sections.offset_borders.iter().enumerate() {
+        let (free, shares) = (border.free(system, now, w), system.mesh.sides_of_node(border.node).1);
+        let curvature = w.shape.side_curvature[k];
+        let [left, right] = [0, 1].map(|side| (curvature[side] - free[side]) * border.bending[side]);
+        w.forces.side_moment[2 * k] = left;
+        w.forces.side_moment[2 * k + 1] = right;
+        w.forces.moment[border.node] = left * shares[0] + right * shares[1];
+    }
+}
+
+/// Elastic energy of bending at a node where neutral axes jump [J].
+pub fn side_energy(system: &System, w: &Workspace<f64>, node: usize) -> Option<f64> {
+    let borders = &system.sections.offset_borders;
+    let k = borders.binary_search_by_key(&node, |border| border.node).ok()?;
+    let (halves, moments) = (system.mesh.sides_of_node(node).1, &w.forces.side_moment[2 * k..]);
+    let of = |side: usize| halves[side] * moments[side] * moments[side] / borders[k].bending[side];
+    Some(0.5 * system.mesh.node_lengths[node] * (of(0) + of(1)))
+}
+
 /// Adds the part of curvature to normal forces, and to viscous ones.
 pub fn normal_forces<T: Scalar>(system: &System, now: &TimeData, w: &mut Workspace<T>) {
     let time = system.model.section.axial_damping_time;
+    let mut borders = system.sections.offset_borders.iter().zip(&w.shape.side_curvature).peekable();
+    let mut left_end = None;
     for (c, (d, ea)) in system.sections.offset.iter().zip(&system.sections.axial).enumerate() {
-        let bent = (w.shape.kappa[c] + w.shape.kappa[c + 1]) * 0.5 - T::constant(mean_rest(now, 0, c));
+        let left = left_end.take().unwrap_or(w.shape.kappa[c]);
+        let mut right = w.shape.kappa[c + 1];
+        if let Some((_, sides)) = borders.next_if(|(border, _)| border.node == c + 1) {
+            right = sides[0];
+            left_end = Some(sides[1]);
+        }
+        let bent = (left + right) * 0.5 - T::constant(mean_rest(now, 0, c));
         w.forces.normal[c] += bent * (d * ea);
         if time > 0.0 {
             let mut rate = T::constant(-mean_rest(now, 1, c));
@@ -136,11 +224,14 @@ fn ends<'a>(system: &'a System, now: &'a TimeData) -> impl Iterator<Item = Given
         })
 }
 
-/// Nodes of a cell with their weights in the mean rate of curvature; an end with a given moment has none.
+/// Nodes of a cell with their weights in the mean rate of curvature; an end with a given moment has none, nor has a [`Border`].
 fn viscous_weights(system: &System, now: &TimeData, cell: usize) -> [(usize, f64); 2] {
     let last = system.mesh.nodes - 1;
     let moves = |node: usize| now.end(node).is_none_or(|end| end.slope.is_some());
-    let [left, right] = [cell, cell + 1].map(|node| (node != 0 && node != last) || moves(node));
+    let borders = &system.sections.offset_borders;
+    let jumps = |node: usize| borders.binary_search_by_key(&node, |border| border.node).is_ok();
+    let [left, right] =
+        [cell, cell + 1].map(|node| ((node != 0 && node != last) || moves(node)) && !jumps(node));
     match (left, right) {
         (true, false) => [(cell, 1.0), (cell + 1, 0.0)],
         (false, true) => [(cell, 0.0), (cell + 1, 1.0)],
