@@ -163,7 +163,7 @@ impl ChainRule {
                     read(row, 1.0);
                 } else if row < places.sides {
                     let node = row - places.moments;
-                    if borders.binary_search_by_key(&node, |border| border.node).is_ok() {
+                    if system.sections.offset_border(node).is_some() {
                         continue;
                     }
                     let (left, right) = system.mesh.segments_of_node(node);

@@ -336,7 +336,7 @@ impl System {
         Self {
             stands_alone: nothing_attached && !model.section.resists_motion() && !surrounded,
             model,
-            probes: MeshProbe::all(case, &mesh),
+            probes: MeshProbe::all(case, &mesh, &sections),
             mesh,
             fluid,
             layout,

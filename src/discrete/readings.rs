@@ -41,12 +41,16 @@ impl Workspace<f64> {
         own(&self.readings.curvature, &self.shape.kappa)
     }
 
+    /// Moments of the linear law at nodes, `EI (κ - α_p - κ_0)` [N m].
+    pub fn linear_moments(&self) -> &[f64] {
+        own(&self.readings.moment, &self.forces.moment)
+    }
+
     /// Moments M at nodes without damping [N m].
     pub fn moments(&self) -> Cow<'_, [f64]> {
         let forces = &self.forces;
-        let moment = own(&self.readings.moment, &forces.moment);
         together(
-            moment,
+            self.linear_moments(),
             &[&forces.nonlinear_moment, &forces.relaxing_moment, &forces.offset_moment],
         )
     }

@@ -23,6 +23,8 @@ pub struct MeshSections {
     pub bending: Vec<f64>,
     /// `EI` at the place of each node, where it is not that of `bending` [N m^2]; empty if it is everywhere.
     bending_at_place: Vec<f64>,
+    /// `EI` on the left and on the right of each node [N m^2].
+    pub bending_beside: Vec<[f64; 2]>,
     /// Moment-curvature laws of the nodes, [E91]; empty if all are linear.
     pub laws: Vec<NodeBending>,
     /// Distance of the farthest fiber from the beam's line at each node, the larger one between two segments [m].
@@ -130,6 +132,14 @@ impl MeshSections {
         (before / whole, before * (whole - before) / whole)
     }
 
+    /// Index of a node among those where neutral axes jump.
+    #[inline]
+    pub fn offset_border(&self, node: usize) -> Option<usize> {
+        self.offset_borders
+            .binary_search_by_key(&node, |border| border.node)
+            .ok()
+    }
+
     /// `EI` at the place of a node [N m^2].
     pub fn bending_at(&self, node: usize) -> f64 {
         *self.bending_at_place.get(node).unwrap_or(&self.bending[node])
@@ -171,6 +181,7 @@ impl MeshSections {
                     })
                     .collect(),
             },
+            bending_beside: stiffness,
             bending_of_cells: placed.in_cells(|section| section.bending_stiffness),
             farthest_fiber: placed
                 .beside_nodes()
@@ -195,11 +206,7 @@ impl MeshSections {
                     .parts
                     .windows(2)
                     .filter(|pair| pair.iter().all(|part| part.len() > 1))
-                    .map(|pair| pair[1].start)
-                    .map(|node| Border {
-                        node,
-                        bending: stiffness[node],
-                    })
+                    .map(|pair| Border { node: pair[1].start })
                     .collect(),
             },
             offset: match offset.iter().all(|d| *d == 0.0) {

@@ -230,19 +230,13 @@ impl<T: Scalar> FluidState<T> {
     /// Converts a flow along a link from ambient density to the link's mean density [m^3/s].
     #[inline]
     pub fn at_mean_density(&self, link: usize, flow: T) -> T {
-        match self.density.get(link) {
-            None => flow,
-            Some(density) => flow / *density,
-        }
+        self.density.get(link).map_or(flow, |density| flow / *density)
     }
 
     /// Converts a volume flow along a link from the link's mean density to ambient density [m^3/s].
     #[inline]
     pub fn at_ambient_density(&self, link: usize, volume: T) -> T {
-        match self.density.get(link) {
-            None => volume,
-            Some(density) => volume * *density,
-        }
+        self.density.get(link).map_or(volume, |density| volume * *density)
     }
 
     /// Square root of the mean density along a link; none if the fluid is incompressible.

@@ -13,7 +13,7 @@ use crate::jacobian::agrees;
 use crate::spans::{column, faults, largest, parse, run};
 
 /// The published beam with ten segments under the pressure of its upper row.
-fn pressed(beam: &Value, bladders: &Value, extra: &Value) -> Value {
+pub fn pressed(beam: &Value, bladders: &Value, extra: &Value) -> Value {
     let mut case = json!({
         "name": "pressed", "preset": "matia-gat-beam", "fluid": {"viscosity_pa_s": 0.3},
         "network": {"chains": [{"bladders": [1, 2, 3, 4, 5, 6, 7, 8, 9, 10],

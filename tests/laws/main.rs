@@ -10,6 +10,7 @@ mod closing;
 #[path = "../differences/mod.rs"]
 mod differences;
 mod eccentric;
+mod eccentric_borders;
 mod foundation;
 mod jacobian;
 #[path = "../common/kinematics.rs"]

@@ -2,15 +2,16 @@
 
 use super::Observable;
 use super::evaluate::StateView;
-use crate::case::schema::{Case, Probe as Written};
+use crate::case::schema::{Beam, Case, Probe as Written};
 use crate::case::spans;
 use crate::discrete::angle_unwrapping::{first_angle, rotation, tip_angle};
-use crate::discrete::{BeamMesh, System};
+use crate::discrete::residual::bending::segment_curvature;
+use crate::discrete::{BeamMesh, MeshSections, System};
 
 /// A place of the beam, on a mesh.
 ///
-/// Values of nodes and of cells are interpolated linearly, those of cells extrapolated to the ends: the error is second order in the cell
-/// length.
+/// Values of nodes and of cells are interpolated linearly, those of cells extrapolated to the ends of smooth parts: the error is second
+/// order in the cell length. Curvatures beside a jump of the section are those of the probe's side; at a jump, those behind it.
 #[derive(Clone, Debug)]
 pub struct MeshProbe {
     /// First part of its column names.
@@ -24,6 +25,8 @@ pub struct MeshProbe {
     cell: (usize, f64),
     /// Segment of the probe.
     segment: usize,
+    /// EI of the probe's side at both nodes, if the section jumps there [N m^2].
+    jumps: [Option<f64>; 2],
     /// Heights of the upper and the lower surface above the beam's line [m].
     surfaces: [f64; 2],
     /// Young's modulus of the solid [Pa].
@@ -45,7 +48,7 @@ const TABLE: [Entry; 13] = [
     ("u1", "m", "transverse displacement", false, |p, look| p.of_nodes(|i| look.w.motion.u[i].x)),
     ("u3", "m", "axial displacement", false, |p, look| p.of_nodes(|i| look.w.motion.u[i].z)),
     ("angle", "rad", "slope angle phi, counted over full turns", false, MeshProbe::angle),
-    ("curvature", "1/m", "curvature", false, |p, look| { let kappa = look.w.curvature(); p.of_nodes(|i| kappa[i]) }),
+    ("curvature", "1/m", "curvature", false, MeshProbe::curvature),
     ("strain_upper", "1", "strain lambda - 1 + kappa h_s/2 of the upper surface", false, |p, look| p.surface(look, 0)),
     ("strain_lower", "1", "strain lambda - 1 - kappa h_s/2 of the lower surface", false, |p, look| p.surface(look, 1)),
     ("stress_upper", "Pa", "stress along the beam of the solid at the upper surface, without viscous damping", false, |p, look| p.stress(look, 0)),
@@ -142,27 +145,64 @@ fn entries(system: &System) -> impl Iterator<Item = (&MeshProbe, Entry)> {
 
 impl MeshProbe {
     /// Probes of a case.
-    pub fn all(case: &Case, mesh: &BeamMesh) -> Vec<Self> {
+    pub fn all(case: &Case, mesh: &BeamMesh, sections: &MeshSections) -> Vec<Self> {
         let segments = spans::segments(case);
+        let parts = 2 * mesh.cells_per_segment;
+        let within = match case.probes.is_empty() {
+            true => vec![],
+            false => spans::within(case, &segments, parts),
+        };
         let probe = |probe: &Written| {
-            let mut one = Self::new(&probe.name, probe.at, mesh);
+            let mut one = Self::new(&probe.name, probe.at, mesh, sections);
+            let surfaces = |beam: &Beam| [0.5, -0.5].map(|side| side * beam.height_m - beam.line_height());
+            let (node, share) = one.node;
+            if let Some(beams @ [_, ..]) = within.get(one.segment).map(|beams| &beams[..]) {
+                let place = 2.0 * ((node - one.segment * mesh.cells_per_segment) as f64 + share);
+                let before = (place as usize).min(parts - 1);
+                let pair = [&beams[before], &beams[before + 1]];
+                let share = place - before as f64;
+                let between = |[a, b]: [f64; 2]| a + share * (b - a);
+                let sides = pair.map(surfaces);
+                one.surfaces = [0, 1].map(|side| between([sides[0][side], sides[1][side]]));
+                one.young_modulus = between(pair.map(|beam| beam.young_modulus_pa));
+                return one;
+            }
             let beam = segments.get(one.segment).map_or(&case.beam, |values| &values.beam);
-            one.surfaces = [0.5, -0.5].map(|side| side * beam.height_m - beam.line_height());
+            one.surfaces = surfaces(beam);
             one.young_modulus = beam.young_modulus_pa;
             one
         };
         case.probes.iter().map(probe).collect()
     }
 
-    fn new(name: &str, at: f64, mesh: &BeamMesh) -> Self {
+    fn new(name: &str, at: f64, mesh: &BeamMesh, sections: &MeshSections) -> Self {
         let place = mesh.place(at);
         let node = (place as usize).min(mesh.cells - 1);
+        let jump = |node: usize, side: usize| {
+            let both = sections.bending_beside[node];
+            (both[0] != both[1]).then_some(both[side])
+        };
+        let (mut cell, mut share) = mesh.between_midpoints(place);
+        let [before, behind] = mesh.at_part_ends(node);
+        if cell + 1 == node && before && node > 0 {
+            // from the two cells behind the jump, or the only one
+            (cell, share) = match behind {
+                true => (node, 0.0),
+                false => (node, place - node as f64 - 0.5),
+            };
+        } else if cell == node && behind && node + 1 < mesh.cells && share > 0.0 {
+            (cell, share) = match before {
+                true => (node, 0.0),
+                false => (node - 1, place - node as f64 + 0.5),
+            };
+        }
         Self {
             name: name.into(),
             at,
             node: (node, place - node as f64),
-            cell: mesh.between_midpoints(place),
+            cell: (cell, share),
             segment: node / mesh.cells_per_segment,
+            jumps: [jump(node, 1), jump(node + 1, 0)],
             surfaces: [0.0; 2],
             young_modulus: 0.0,
         }
@@ -195,11 +235,35 @@ impl MeshProbe {
         first_angle(look.system, look.now, &look.w) - (passed + mesh.lengths[node] * rest) + turns
     }
 
+    fn curvature(&self, look: &StateView) -> f64 {
+        self.of_nodes(|i| self.node_curvature(look, i))
+    }
+
+    /// Curvature of a node beside the probe, on the probe's side of a jump of the section: `M/EI + α_p + κ_0`.
+    fn node_curvature(&self, look: &StateView, node: usize) -> f64 {
+        let (system, w) = (look.system, &look.w);
+        let own = self.jumps[node - self.node.0];
+        // a nonlinear law has no such EI
+        let linear = system.sections.laws.is_empty() && w.forces.nonlinear_moment.is_empty();
+        let Some(stiffness) = own.filter(|_| linear) else {
+            return w.curvature()[node];
+        };
+        let right = usize::from(node == self.node.0);
+        match system.sections.offset_border(node) {
+            Some(border) => w.shape.side_curvature[border][right],
+            None if !system.sections.offset.is_empty() => w.curvature()[node],
+            None => {
+                let free = segment_curvature(system, w, self.segment) + look.now.rest_curvature(node);
+                w.linear_moments()[node] / stiffness + free
+            }
+        }
+    }
+
     /// `λ - 1 + κ (±h_s/2 - z_r)`, κ relative to the rest curvature.
     fn surface(&self, look: &StateView, side: usize) -> f64 {
         let shape = &look.w.shape;
         self.of_cells(|c| shape.strain[c])
-            + self.surfaces[side] * self.of_nodes(|i| look.w.curvature()[i] - look.now.rest_curvature(i))
+            + self.surfaces[side] * self.of_nodes(|i| self.node_curvature(look, i) - look.now.rest_curvature(i))
     }
 
     /// Stress of a fibre at a surface: Young's modulus E times its strain, plus the stress of the Maxwell branches, which, like strain,
@@ -210,10 +274,14 @@ impl MeshProbe {
     /// ```
     fn stress(&self, look: &StateView, side: usize) -> f64 {
         let (sections, forces) = (&look.system.sections, &look.w.forces);
-        let part =
-            |forces: &[f64], stiffness: &[f64], k: usize| forces.get(k).map_or(0.0, |force| force / stiffness[k]);
-        let normal = |c: usize| part(&forces.relaxing_normal, &sections.axial, c);
-        let moment = |i: usize| part(&forces.relaxing_moment, &sections.bending, i);
+        let normal = |c: usize| {
+            forces
+                .relaxing_normal
+                .get(c)
+                .map_or(0.0, |force| force / sections.axial[c])
+        };
+        let own = |i: usize| self.jumps[i - self.node.0].unwrap_or(sections.bending[i]);
+        let moment = |i: usize| forces.relaxing_moment.get(i).map_or(0.0, |moment| moment / own(i));
         let relaxing = self.of_cells(normal) + self.surfaces[side] * self.of_nodes(moment);
         self.young_modulus * (self.surface(look, side) + relaxing)
     }

@@ -68,8 +68,6 @@ fn force_by_neighbor<T: Scalar>(
 pub struct Border {
     /// Node.
     pub node: usize,
-    /// EI on the left and on the right [N m^2].
-    pub bending: [f64; 2],
 }
 
 impl Border {
@@ -88,13 +86,16 @@ impl Border {
     /// Curvatures of both sides: `κ_s = (M + B_s)/A_s`, with `A = EI + EA d²/2` and B as in [`end_curvatures`].
     fn curvatures<T: Scalar>(&self, system: &System, now: &TimeData, w: &Workspace<T>) -> [T; 2] {
         let (free, shares) = (self.free(system, now, w), system.mesh.sides_of_node(self.node).1);
-        let sides = self.sides();
+        let (sides, bending) = (self.sides(), system.sections.bending_beside[self.node]);
         let of = |side: usize| {
             let [cell, beside] = sides[side];
             let (axial, offset) = (system.sections.axial[cell], system.sections.offset[cell]);
             let force = force_by_neighbor(system, now, w, cell, beside, [axial, offset]);
-            let stiffness = self.bending[side] + 0.5 * axial * offset * offset;
-            ((free[side] * self.bending[side] - force * offset) * (1.0 / stiffness), 1.0 / stiffness)
+            let stiffness = bending[side] + 0.5 * axial * offset * offset;
+            (
+                (free[side] * bending[side] - force * offset) * (1.0 / stiffness),
+                1.0 / stiffness,
+            )
         };
         let [left, right] = [of(0), of(1)];
         let compliance = shares[0] * left.1 + shares[1] * right.1;
@@ -107,8 +108,8 @@ impl Border {
 pub fn side_moments<T: Scalar>(system: &System, now: &TimeData, w: &mut Workspace<T>) {
     for (k, border) in system.sections.offset_borders.iter().enumerate() {
         let (free, shares) = (border.free(system, now, w), system.mesh.sides_of_node(border.node).1);
-        let curvature = w.shape.side_curvature[k];
-        let [left, right] = [0, 1].map(|side| (curvature[side] - free[side]) * border.bending[side]);
+        let (curvature, bending) = (w.shape.side_curvature[k], system.sections.bending_beside[border.node]);
+        let [left, right] = [0, 1].map(|side| (curvature[side] - free[side]) * bending[side]);
         w.forces.side_moment[2 * k] = left;
         w.forces.side_moment[2 * k + 1] = right;
         w.forces.moment[border.node] = left * shares[0] + right * shares[1];
@@ -117,17 +118,22 @@ pub fn side_moments<T: Scalar>(system: &System, now: &TimeData, w: &mut Workspac
 
 /// Elastic energy of bending at a node where neutral axes jump [J].
 pub fn side_energy(system: &System, w: &Workspace<f64>, node: usize) -> Option<f64> {
-    let borders = &system.sections.offset_borders;
-    let k = borders.binary_search_by_key(&node, |border| border.node).ok()?;
-    let (halves, moments) = (system.mesh.sides_of_node(node).1, &w.forces.side_moment[2 * k..]);
-    let of = |side: usize| halves[side] * moments[side] * moments[side] / borders[k].bending[side];
+    let k = system.sections.offset_border(node)?;
+    let bending = system.sections.bending_beside[node];
+    let (shares, moments) = (system.mesh.sides_of_node(node).1, &w.forces.side_moment[2 * k..]);
+    let of = |side: usize| shares[side] * moments[side] * moments[side] / bending[side];
     Some(0.5 * system.mesh.node_lengths[node] * (of(0) + of(1)))
 }
 
 /// Adds the part of curvature to normal forces, and to viscous ones.
 pub fn normal_forces<T: Scalar>(system: &System, now: &TimeData, w: &mut Workspace<T>) {
     let time = system.model.section.axial_damping_time;
-    let mut borders = system.sections.offset_borders.iter().zip(&w.shape.side_curvature).peekable();
+    let mut borders = system
+        .sections
+        .offset_borders
+        .iter()
+        .zip(&w.shape.side_curvature)
+        .peekable();
     let mut left_end = None;
     for (c, (d, ea)) in system.sections.offset.iter().zip(&system.sections.axial).enumerate() {
         let left = left_end.take().unwrap_or(w.shape.kappa[c]);
@@ -228,10 +234,8 @@ fn ends<'a>(system: &'a System, now: &'a TimeData) -> impl Iterator<Item = Given
 fn viscous_weights(system: &System, now: &TimeData, cell: usize) -> [(usize, f64); 2] {
     let last = system.mesh.nodes - 1;
     let moves = |node: usize| now.end(node).is_none_or(|end| end.slope.is_some());
-    let borders = &system.sections.offset_borders;
-    let jumps = |node: usize| borders.binary_search_by_key(&node, |border| border.node).is_ok();
-    let [left, right] =
-        [cell, cell + 1].map(|node| ((node != 0 && node != last) || moves(node)) && !jumps(node));
+    let jumps = |node: usize| system.sections.offset_border(node).is_some();
+    let [left, right] = [cell, cell + 1].map(|node| ((node != 0 && node != last) || moves(node)) && !jumps(node));
     match (left, right) {
         (true, false) => [(cell, 1.0), (cell + 1, 0.0)],
         (false, true) => [(cell, 0.0), (cell + 1, 1.0)],

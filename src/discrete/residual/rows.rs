@@ -34,10 +34,10 @@ pub fn means<T: Scalar>(system: &System, w: &Workspace<T>, r: &mut [T]) {
 /// Mean moment `Mbar` of a segment, about its own neutral axis.
 pub fn mean_moment<T: Scalar>(system: &System, w: &Workspace<T>, segment: usize) -> T {
     let mut mean = mean_of_nodes(system, &w.forces.moment, segment);
-    let (k, borders) = (system.mesh.cells_per_segment, &system.sections.offset_borders);
+    let k = system.mesh.cells_per_segment;
     // the segment is on the right of its beginning, and on the left of its end
     for (node, side) in [(segment * k, 1), ((segment + 1) * k, 0)] {
-        if let Ok(border) = borders.binary_search_by_key(&node, |border| border.node) {
+        if let Some(border) = system.sections.offset_border(node) {
             let own = w.forces.side_moment[2 * border + side];
             mean += (own - w.forces.moment[node]) * system.mesh.moment_weight(0);
         }
