@@ -10,8 +10,8 @@ use slcbeam_section::input::Section;
 
 use super::schema::StrainEnergy as Written;
 
-/// Largest number of cached sections.
-const KEPT: usize = 16;
+/// Largest number of cached sections: those of a case with the most spans, before and after a change.
+const KEPT: usize = 2048;
 
 /// Cached values, each with its section.
 type CachedValue<T> = Mutex<Vec<(Section, T)>>;

@@ -270,7 +270,7 @@ impl CaseSource {
             .find_map(|pointer| Some((around(pointer)?, pointer.clone())));
         found.or_else(|| {
             let inside = |set: &&SetValue| is_below(&set.pointer, &fault.pointer);
-            let of_section = fault.pointer.starts_with("/section/");
+            let of_section = fault.pointer.starts_with("/section/") || fault.pointer.starts_with("/spans/");
             let set = self.sets.iter().rev().filter(|_| of_section).find(inside)?;
             Some((set, set.pointer.clone()))
         })

@@ -139,26 +139,43 @@ pub fn plane_cell_excess(size: f64, length: f64) -> Option<f64> {
     Some(ENDS * size / length).filter(|excess| *excess > WARNING_LIMIT)
 }
 
-fn plane_cell(case: &Case) -> Option<String> {
-    let bladders = case.bladders.as_ref()?;
+/// Excess of areas that a case or a span, at a pointer, has from a plane cell with these bladders (height, width, length) in a beam of this
+/// width [m].
+fn of_plane_cell(case: &Case, at: &str, [height, width, length]: [f64; 3], beam_width: f64) -> Option<f64> {
     let areas = [
         "/bladders/area_per_moment_m2_per_n_m/opening",
         "/bladders/area_per_moment_m2_per_n_m/closing",
         "/bladders/area_per_force_m2_per_n/tension",
         "/bladders/area_per_force_m2_per_n/compression",
     ];
-    let plane = |pointer: &str| case.origins.get(pointer) == Some(Origin::Section { three_d: false });
+    let plane = |key: &str| case.origins.get(&format!("{at}{key}")) == Some(Origin::Section { three_d: false });
     // without side walls the ends are open
-    let of_plane = areas.into_iter().any(plane) && bladders.length_m < case.beam.width_m;
-    let off = plane_cell_excess(bladders.height_m.max(bladders.width_m), bladders.length_m)?;
-    of_plane.then(|| {
-        Code::PlaneCell.warning(format!(
-            "coefficients of a plane cell leave out the ends of bladders: areas per moment and force are about {:.0} % too \
-             large (limit {:.0} %). Set \"three_d\": true in /section",
-            100.0 * off,
-            100.0 * WARNING_LIMIT
-        ))
-    })
+    let closed = areas.into_iter().any(plane) && length < beam_width;
+    plane_cell_excess(height.max(width), length).filter(|_| closed)
+}
+
+/// Warning about ends of bladders that plane cells leave out.
+fn plane_cell(case: &Case) -> Option<String> {
+    let bladders = case.bladders.as_ref()?;
+    let sizes = [bladders.height_m, bladders.width_m, bladders.length_m];
+    let of_case = of_plane_cell(case, "", sizes, case.beam.width_m).map(|excess| ("/section".to_owned(), excess));
+    let in_spans = case.spans.iter().enumerate().filter_map(|(k, span)| {
+        let (own, at) = (span.section.as_ref()?, format!("/spans/{k}"));
+        let height = span.bladders.height_m.as_ref()?.value(0.5);
+        let sizes = [height, own.bladders.along(), own.bladders.length_m];
+        let excess = of_plane_cell(case, &at, sizes, own.width_m)?;
+        Some((format!("{at}/section"), excess))
+    });
+    let all: Vec<(String, f64)> = of_case.into_iter().chain(in_spans).collect();
+    let largest = all.iter().map(|(_, excess)| *excess).reduce(f64::max)?;
+    let places: Vec<&str> = all.iter().map(|(at, _)| at.as_str()).collect();
+    Some(Code::PlaneCell.warning(format!(
+        "coefficients of a plane cell leave out the ends of bladders: areas per moment and force are about {:.0} % too \
+         large (limit {:.0} %). Set \"three_d\": true in {}",
+        100.0 * largest,
+        100.0 * WARNING_LIMIT,
+        places.join(", ")
+    )))
 }
 
 /// Warning about the coefficients of laws that are not exact for this case.

@@ -137,6 +137,7 @@ pub fn parse_varied(text: &str, path: &Path, base: &Path, sets: &[String], varie
     let Filled {
         whole: mut value,
         section,
+        spans,
         fluid,
     } = Filled::new(value, &source.sets);
     let mut given = given(&own, &value, section.as_ref(), &steps);
@@ -150,6 +151,7 @@ pub fn parse_varied(text: &str, path: &Path, base: &Path, sets: &[String], varie
     let mut faults = Violations::default();
     invalid.iter().for_each(|pointer| faults.doubt(pointer));
     section.iter().for_each(|section| section.doubt(&own, &mut faults));
+    spans.doubt(&mut faults);
     validate::validate(&value, &own, &schema_json::CASE, &mut faults);
     faults.drop_below(&invalid);
     // `null` from the command line removes an optional value.
@@ -162,6 +164,7 @@ pub fn parse_varied(text: &str, path: &Path, base: &Path, sets: &[String], varie
     if section.as_ref().is_some_and(section::SectionValues::stands_in) {
         section::remove(&mut value);
     }
+    spans.report(&mut faults);
     let case = match value.is_object() {
         true => build(value.clone(), base, &mut faults, violations.is_empty()),
         false => None,
@@ -172,7 +175,14 @@ pub fn parse_varied(text: &str, path: &Path, base: &Path, sets: &[String], varie
         None => fluids::report_unnamed(&own, &mut faults),
     }
     let case = case.map(|case| Case {
-        origins: Origins::new(&own, &value, &source.sets, case.preset, section.as_ref(), given),
+        origins: Origins::new(
+            &own,
+            &value,
+            &source.sets,
+            case.preset,
+            (section.as_ref(), &spans),
+            given,
+        ),
         ..case
     });
     violations.extend(faults.placed(&source));
@@ -188,20 +198,29 @@ pub fn parse_varied(text: &str, path: &Path, base: &Path, sets: &[String], varie
     }
 }
 
-/// A case with the values of its section, its fluid and its preset.
+/// A case with the values of its sections, its fluid and its preset.
 struct Filled {
     whole: Value,
     section: Option<section::SectionValues>,
+    spans: section::SpanSections,
     fluid: Option<fluids::FluidValues>,
 }
 
 impl Filled {
     fn new(own: Value, sets: &[SetValue]) -> Self {
-        let (section, fluid) = (section::computed_values(&own), fluids::preset_values(&own));
-        let brought = [section.as_ref().map(|s| &s.values), fluid.as_ref().map(|f| &f.values)];
+        let spans = section::SpanSections::new(&own);
         let mut whole = own;
+        spans.outline(&mut whole);
+        let (section, fluid) = (section::computed_values(&whole), fluids::preset_values(&whole));
+        let brought = [section.as_ref().map(|s| &s.values), fluid.as_ref().map(|f| &f.values)];
         presets::apply(&mut whole, sets, brought.into_iter().flatten().cloned());
-        Self { whole, section, fluid }
+        spans.fill(&mut whole);
+        Self {
+            whole,
+            section,
+            spans,
+            fluid,
+        }
     }
 }
 

@@ -12,7 +12,7 @@ use super::fluids;
 use super::numbers::digits;
 use super::presets::Preset;
 use super::scaling::CoefficientSizes;
-use super::section::SectionValues;
+use super::section::{SectionValues, SpanSections};
 
 /// Origin of a coefficient.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -88,14 +88,14 @@ const COEFFICIENTS: [&str; 14] = [
 ];
 
 impl Origins {
-    /// Origins in a case read from `own`, which includes the arguments `sets`; `whole` also includes the values of its section and its
+    /// Origins in a case read from `own`, which includes the arguments `sets`; `whole` also includes the values of its sections and its
     /// preset.
     pub(super) fn new(
         own: &Value,
         whole: &Value,
         sets: &[SetValue],
         preset: Option<Preset>,
-        of_section: Option<&SectionValues>,
+        (of_section, of_spans): (Option<&SectionValues>, &SpanSections),
         given: CoefficientSizes,
     ) -> Self {
         let single = whole.pointer("/network/tubes").and_then(Value::as_array);
@@ -104,7 +104,7 @@ impl Origins {
         let known = pointers.filter_map(|pointer| {
             let section = pointer.split('/').nth(1)?;
             whole.get(section)?;
-            let set = || sets.iter().any(|s| s.node.is_some() && is_below(&pointer, &s.pointer));
+            let set = || is_set(sets, &pointer);
             let brought = of_section.filter(|s| s.values.pointer(&pointer).is_some());
             let origin = match (whole.pointer(&pointer), own.pointer(&pointer), brought, preset) {
                 (None, ..) => absent(whole, &pointer)?,
@@ -117,8 +117,13 @@ impl Origins {
             };
             Some((pointer, origin))
         });
+        let in_spans = of_spans.origins(own, &COEFFICIENTS).into_iter();
+        let in_spans = in_spans.map(|(pointer, origin)| match is_set(sets, &pointer) {
+            true if origin == Origin::Case => (pointer, Origin::Set),
+            _ => (pointer, origin),
+        });
         Self {
-            known: known.chain(named(own)).collect(),
+            known: known.chain(in_spans).chain(named(own)).collect(),
             given,
         }
     }
@@ -147,6 +152,12 @@ impl Origins {
     }
 }
 
+/// True if an argument gives the value at a pointer.
+fn is_set(sets: &[SetValue], pointer: &str) -> bool {
+    sets.iter()
+        .any(|set| set.node.is_some() && is_below(pointer, &set.pointer))
+}
+
 /// Origins of the numbers of named fluids and elastomers.
 fn named(own: &Value) -> Vec<(String, Origin)> {
     let mut found = vec![];
@@ -157,12 +168,17 @@ fn named(own: &Value) -> Vec<(String, Origin)> {
         let own = keys.filter(|(pointer, _)| own.pointer(pointer).is_none());
         found.extend(own.map(|(pointer, source)| (pointer.to_owned(), Origin::Fluid(fluid.name(), source))));
     }
-    let regions = own
-        .pointer("/section/regions")
-        .and_then(Value::as_array)
-        .map_or(0, Vec::len);
-    let places = (0..regions).map(|i| format!("/section/regions/{i}/material"));
-    for pointer in std::iter::once("/section/material".to_owned()).chain(places) {
+    let spans = own.get("spans").and_then(Value::as_array).map_or(0, Vec::len);
+    let in_spans = (0..spans).map(|k| format!("/spans/{k}/section"));
+    let materials = std::iter::once("/section".to_owned())
+        .chain(in_spans)
+        .flat_map(|section| {
+            let regions = own.pointer(&format!("{section}/regions")).and_then(Value::as_array);
+            let own = format!("{section}/material");
+            let places = (0..regions.map_or(0, Vec::len)).map(move |i| format!("{section}/regions/{i}/material"));
+            std::iter::once(own).chain(places)
+        });
+    for pointer in materials {
         let name = own.pointer(&pointer).and_then(|material| material.get("preset"));
         if let Some(preset) = name.and_then(|name| serde_json::from_value(name.clone()).ok()) {
             found.push((pointer, Origin::Elastomer(preset)));

@@ -85,7 +85,8 @@ impl Parameter {
         let usage = |what: String| Err(Error::Usage(format!("{option} {pointer}: {what}")));
         let resolved = written_out(case);
         let part = pointer.split('/').nth(1).unwrap_or_default();
-        if pointer.starts_with("/section/") {
+        let (in_span, inner) = in_span(pointer);
+        if inner.starts_with("/section/") {
             return usage(
                 "the numbers of a section are not parameters of the model; use the coefficients computed from it"
                     .into(),
@@ -97,8 +98,8 @@ impl Parameter {
                 PARTS.join(", /")
             ));
         }
-        let stiffness = case.origins.get("/beam/axial_stiffness_factor");
-        if section::SIZES.contains(&pointer) && matches!(stiffness, Some(Origin::Section { .. })) {
+        let stiffness = case.origins.get(&format!("{in_span}/beam/axial_stiffness_factor"));
+        if section::SIZES.contains(&inner) && matches!(stiffness, Some(Origin::Section { .. })) {
             return usage(
                 "the section defines it, and the coefficients computed from the section would not change with it"
                     .into(),
@@ -144,6 +145,12 @@ impl Parameter {
     pub fn changed(&self, case: &Case, value: f64) -> Result<Case> {
         with(case, &[(&self.pointer, value)])
     }
+}
+
+/// Pointer of the span in which a pointer is, and the pointer within it; empty, and the pointer itself outside of spans.
+fn in_span(pointer: &str) -> (&str, &str) {
+    let inner = pointer.strip_prefix("/spans/").and_then(|rest| rest.find('/'));
+    pointer.split_at(inner.map_or(0, |at| at + "/spans/".len()))
 }
 
 /// Returns a case as JSON with every default filled in, including openings of fully open valves, which files omit.

@@ -6,7 +6,6 @@
 
 use std::collections::BTreeMap;
 
-use serde::Deserialize;
 use serde_json::Value;
 
 use super::faults::is_below;
@@ -33,13 +32,10 @@ pub(super) struct Sizes {
 
 /// Length of the segments to which the coefficients of a case in JSON belong [m].
 fn pitch(case: &Value, length: f64, per_row: f64) -> f64 {
-    let spans = case
-        .get("spans")
-        .filter(|spans| spans.as_array().is_some_and(|all| !all.is_empty()));
-    let spans = spans.and_then(|spans| Vec::<Span>::deserialize(spans).ok());
-    match spans {
-        None => length / per_row,
-        Some(spans) => SpanLengths::resolve(&spans, length, per_row as usize).pitch,
+    let spans = Span::outlines(case);
+    match spans.is_empty() {
+        true => length / per_row,
+        false => SpanLengths::resolve(&spans, length, per_row as usize).pitch,
     }
 }
 

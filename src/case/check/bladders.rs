@@ -95,7 +95,9 @@ pub(super) fn existing(number: i64, case: &Case, pointer: &str, faults: &mut Vio
             ),
             true => {
                 let span = spans::places(case).get(index % per_row).map_or(0, |place| place.0);
-                let hint = format!("change /spans/{span}/rows, or name other bladders; numbers count segments");
+                let own = case.spans.get(span).and_then(|span| span.section.as_ref());
+                let rows = own.map_or("rows", |_| "section/bladders");
+                let hint = format!("change /spans/{span}/{rows}, or name other bladders; numbers count segments");
                 (format!("/spans/{span} has none in this row"), hint)
             }
         };

@@ -16,6 +16,7 @@ pub mod rarely_intended;
 mod relaxation;
 mod rotating_frame;
 mod size;
+mod span_sections;
 mod spans;
 mod start;
 mod strength;

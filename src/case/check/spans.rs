@@ -1,6 +1,6 @@
 //! Checks of spans: whole segments that fill the beam, positive values, bladders that fit, and settings that require a uniform beam.
 
-use super::{bladders, coefficients, plausible, strength};
+use super::{bladders, coefficients, plausible, span_sections, strength};
 use crate::case::faults::Violations;
 use crate::case::numbers::rounded as plain;
 use crate::case::schema::{Beam, Bladders, Case, Formulation, ROUNDING, Span, SpanLengths, SpanRows};
@@ -18,7 +18,11 @@ pub(super) fn check(case: &Case, faults: &mut Violations) {
     }
     lengths(case, faults);
     for (k, span) in case.spans.iter().enumerate() {
-        if case.bladders.is_none() && (span.rows != SpanRows::Both || !span.bladders.is_empty()) {
+        if let Some(section) = &span.section {
+            span_sections::check(case, k, section, faults);
+        }
+        let of_section = span.section.is_some();
+        if case.bladders.is_none() && !of_section && (span.rows != SpanRows::Both || !span.bladders.is_empty()) {
             let what = "the span has values of bladders, but the case has no bladders";
             let fault = Violation::new(Code::Together, format!("/spans/{k}"), what);
             faults.push(fault.hint("add \"bladders\", or remove \"rows\" and \"bladders\" from the span"));
@@ -47,6 +51,10 @@ pub(super) fn check(case: &Case, faults: &mut Violations) {
         faults.push(fault.hint("give \"rows\" of a span, or null for /bladders, /fluid and /network: a dry beam"));
     }
     near_borders(case, faults);
+    // values that stand in for those of an invalid section are doubtful
+    if !faults.are_sound(&["/beam", "/bladders"]) {
+        return;
+    }
     if faults.is_empty() {
         values(case, faults);
     }

@@ -2,6 +2,8 @@
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
+use serde_json::{Map, Value};
+use slcbeam_section::input::Section;
 
 use super::{AreaPerForce, AreaPerMoment, Case, MomentCurvature, given};
 use crate::case::numbers::rounded;
@@ -26,6 +28,10 @@ pub struct Span {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(range(min = 1, max = 1000000))]
     pub segments: Option<usize>,
+    /// Section of the span by its geometry. The span does not give sizes, material, coefficients and rows itself: they are computed from
+    /// this unit cell, as in `/section`. The pitch of bladders determines the number of segments.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub section: Option<Section>,
     /// Rows that have bladders here. Without bladders the section is full: its factors of mass and stiffness are 1 unless given.
     #[serde(default, skip_serializing_if = "SpanRows::is_both")]
     pub rows: SpanRows,
@@ -38,6 +44,33 @@ pub struct Span {
 }
 
 impl Span {
+    /// Lengths, numbers of segments, rows and readable sections of the spans of a case in JSON; none if another of these is unreadable.
+    pub fn outlines(case: &Value) -> Vec<Self> {
+        let read = |span: &Value| {
+            let keys = ["length_m", "segments", "rows", "section"];
+            let outline = keys
+                .into_iter()
+                .filter_map(|key| Some((key.to_owned(), span.get(key)?.clone())));
+            let mut outline: Map<String, Value> = outline.collect();
+            Self::deserialize(&Value::Object(outline.clone())).or_else(|_| {
+                outline.shift_remove("section");
+                Self::deserialize(Value::Object(outline))
+            })
+        };
+        let spans = case.get("spans").and_then(Value::as_array);
+        let spans: Result<_, _> = spans.into_iter().flatten().map(read).collect();
+        spans.unwrap_or_default()
+    }
+
+    /// Length of each span of a beam of this length [m].
+    pub fn lengths(spans: &[Self], total: f64) -> Vec<f64> {
+        let given: f64 = spans.iter().filter_map(|span| span.length_m).sum();
+        spans
+            .iter()
+            .map(|span| span.length_m.unwrap_or(total - given))
+            .collect()
+    }
+
     /// Given values that are functions of the place, with the key of their part and their own.
     pub fn given(&self) -> impl Iterator<Item = (&'static str, &'static str, &Profile)> {
         let in_beam = self.beam.given().map(|(key, profile)| ("beam", key, profile));
@@ -152,6 +185,9 @@ pub struct SpanBladders {
     /// `a_x`: area per pressure of the other bladder of the segment [m^2/Pa]; only where both rows have bladders.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub area_per_other_pressure_m2_per_pa: Option<Profile>,
+    /// `q1b`: permeability [m^4].
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub permeability_m4: Option<Profile>,
     /// Area per bending moment [m^2/(N m)].
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub area_per_moment_m2_per_n_m: Option<AreaPerMoment>,
@@ -171,6 +207,7 @@ impl SpanBladders {
                 "area_per_other_pressure_m2_per_pa",
                 &self.area_per_other_pressure_m2_per_pa,
             ),
+            ("permeability_m4", &self.permeability_m4),
         ])
     }
 
@@ -188,7 +225,7 @@ pub struct SpanLengths {
     /// Number of segments of each span; none for a length that is not a whole number of segments, or if nothing is left for a span.
     pub counts: Vec<Option<usize>>,
     /// Length of the segments to which the coefficients of the case belong [m]: those of spans that give no number of them; if all spans
-    /// give it, those of the first span with bladders.
+    /// give it, those of the first span with bladders, if possible without a section of its own.
     pub pitch: f64,
     /// Segments left for spans that give no number of them.
     pub left: usize,
@@ -202,11 +239,12 @@ impl SpanLengths {
 
     /// Lengths of the spans of a beam of this length [m] with an allowed number of segments.
     pub fn resolve(spans: &[Span], total: f64, segments: usize) -> Self {
-        let lengths = lengths(spans, total);
+        let lengths = Span::lengths(spans, total);
         let (counted, rest) = counted_and_rest(spans, total);
         let left = segments.saturating_sub(counted);
         let mixed = counted > 0 && spans.iter().any(|span| span.segments.is_none());
-        let with_bladders = spans.iter().position(|span| span.rows != SpanRows::None).unwrap_or(0);
+        let with_bladders = spans.iter().position(of_case).or(spans.iter().position(has_bladders));
+        let with_bladders = with_bladders.unwrap_or(0);
         let first = spans
             .get(with_bladders)
             .and_then(|span| Some(lengths[with_bladders] / span.segments? as f64));
@@ -251,10 +289,10 @@ pub fn segments_of_pitch(spans: &[Span], length: f64, given: Option<f64>, pitch:
     let (counted, rest) = counted_and_rest(spans, length);
     if counted > 0 && spans.iter().all(|span| span.segments.is_some()) {
         let own = SpanLengths::resolve(spans, length, counted).pitch;
-        return match (own - pitch).abs() <= WHOLE * pitch {
+        return match (own - pitch).abs() <= WHOLE * pitch || !spans.iter().any(of_case) {
             true => Ok(counted as u64),
             false => Err(format!(
-                "the segments of the first span with bladders are {} m long, but the pitch of the section is {pitch} m",
+                "the segments of the first span with bladders of the case are {} m long, but the pitch of its section is {pitch} m",
                 rounded(own)
             )),
         };
@@ -274,13 +312,26 @@ pub fn segments_of_pitch(spans: &[Span], length: f64, given: Option<f64>, pitch:
     }
 }
 
-/// Length of each span of a beam of this length [m].
-fn lengths(spans: &[Span], total: f64) -> Vec<f64> {
-    let given: f64 = spans.iter().filter_map(|span| span.length_m).sum();
-    spans
-        .iter()
-        .map(|span| span.length_m.unwrap_or(total - given))
-        .collect()
+/// Number of pitches of a section in a span of this length [m].
+///
+/// # Errors
+/// The nearest number, if the length is not a whole number of pitches.
+pub fn whole_pitches(length: f64, pitch: f64) -> Result<u64, u64> {
+    let count = (length / pitch).round().max(1.0);
+    match (count * pitch - length).abs() <= WHOLE * length {
+        true => Ok(count as u64),
+        false => Err(count as u64),
+    }
+}
+
+/// True for a span with bladders.
+fn has_bladders(span: &Span) -> bool {
+    span.rows != SpanRows::None
+}
+
+/// True for a span with bladders of the section of the case.
+fn of_case(span: &Span) -> bool {
+    has_bladders(span) && span.section.is_none()
 }
 
 /// Segments of the spans that give their number, and the length of the other spans [m], for a beam of this length [m].
@@ -291,7 +342,7 @@ fn counted_and_rest(spans: &[Span], total: f64) -> (usize, f64) {
         .fold(0, usize::saturating_add);
     let own = spans
         .iter()
-        .zip(lengths(spans, total))
+        .zip(Span::lengths(spans, total))
         .filter(|(span, _)| span.segments.is_some());
     (counted, total - own.map(|(_, length)| length).sum::<f64>())
 }

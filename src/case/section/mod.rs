@@ -1,6 +1,5 @@
 //! Coefficients of a case whose section is given by its geometry.
 
-use serde::Deserialize;
 use serde_json::{Value, json};
 use serde_path_to_error::Segment;
 use slcbeam_section::error::Error;
@@ -9,31 +8,24 @@ use slcbeam_section::input::Section;
 use super::faults::{SetValue, Violations, is_below};
 use super::origins::Origin;
 use super::presets::Preset;
-use super::schema::{Span, segments_of_pitch};
+use super::schema::{Span, SpanRows, segments_of_pitch};
 use super::{computed, parameter, sets};
 use crate::error::{Code, Violation};
 
 mod file;
+mod in_span;
 mod neutral_axis;
-
-use neutral_axis::AboutNeutralAxis;
+mod unit_cell;
 
 pub use file::{SectionFile, parse};
 pub(super) use file::{is_one, no_case};
+pub(super) use in_span::SpanSections;
+pub(super) use unit_cell::rows;
 
 /// Key of the section in a case.
 const KEY: &str = "section";
 /// Pointer of the section in a case.
 const AT: &str = "/section";
-/// Largest difference of the rows, and largest coupling of force and curvature, of a section that counts as mirror-symmetric.
-const ALIKE: f64 = 1e-3;
-/// Largest accepted relative error of a coefficient.
-const COARSE: f64 = 0.02;
-/// Smallest area per pressure of the other row, over that per own pressure, that a case takes from its section: the accepted error of
-/// coefficients. A smaller one changes no result by more, and costs an unknown for each bladder.
-const CROSS: f64 = COARSE;
-/// Largest accepted relative error for a cell in three dimensions, whose meshes are coarser; the plane cell omits more.
-const COARSE_IN_SPACE: f64 = 0.06;
 /// Pointer of the energy at finite strain.
 const ENERGY: &str = "/bladders/strain_energy";
 /// Pointer of the lower row.
@@ -88,7 +80,10 @@ pub(super) fn computed_values(case: &Value) -> Option<SectionValues> {
     let found = found.and_then(|section| Ok((values(case, &section)?, section.three_d)));
     Some(match found {
         Ok((values, three_d)) => SectionValues {
-            faults: contradictions(case, &values),
+            faults: contradictions(case, &values, "")
+                .into_iter()
+                .chain(other_lower_row(case, &values))
+                .collect(),
             values,
             three_d,
             stands_in: false,
@@ -102,14 +97,17 @@ pub(super) fn computed_values(case: &Value) -> Option<SectionValues> {
     })
 }
 
-/// True if arguments change the section of a case, or the length that determines the number of bladders.
+/// True if arguments change a section of a case, or a length that determines the number of bladders.
 pub(super) fn changes(sets: &[SetValue]) -> bool {
-    sets.iter()
-        .any(|set| is_below(&set.pointer, AT) || is_below("/beam/length_m", &set.pointer))
+    sets.iter().any(|set| {
+        let at = &set.pointer;
+        is_below(at, AT) || is_below("/beam/length_m", at) || in_span::changes(at)
+    })
 }
 
-/// Removes the values that a case, from the file of a result, has from its section: a changed section or length supplies new ones.
+/// Removes the values that a case, from the file of a result, has from its sections: a changed section or length supplies new ones.
 pub(super) fn release(case: &mut Value, file: &Value) {
+    SpanSections::new(file).release(case, file);
     if !case.get(KEY).is_some_and(Value::is_object) {
         return;
     }
@@ -191,33 +189,50 @@ impl SectionValues {
     }
 }
 
-/// Dimensions and material of a case that differ from those of its section.
-fn contradictions(case: &Value, values: &Value) -> Vec<Violation> {
+/// Dimensions and material of a case or of one of its spans, at a pointer, that differ from those of its section.
+fn contradictions(given: &Value, values: &Value, at: &str) -> Vec<Violation> {
     let number = |of: &Value, pointer: &str| of.pointer(pointer).and_then(Value::as_f64);
     let contradictions = SIZES.into_iter().filter_map(|pointer| {
-        let (given, own) = (number(case, pointer)?, number(values, pointer)?);
+        let (given, own) = (given.pointer(pointer)?, number(values, pointer)?);
         let hint = "leave it out: the section defines it, and its coefficients are computed for that value";
-        let fault = || Violation::new(Code::Range, pointer, format!("{given}, but the section has {own}"));
-        ((given / own - 1.0).abs() > ROUND_OFF).then(|| fault().allowed(own.to_string()).hint(hint))
+        let fault = |what: String| {
+            let fault = Violation::new(
+                Code::Range,
+                format!("{at}{pointer}"),
+                format!("{what}, but the section has {own}"),
+            );
+            fault.allowed(own.to_string()).hint(hint)
+        };
+        match given {
+            Value::Number(_) => {
+                let given = given.as_f64()?;
+                ((given / own - 1.0).abs() > ROUND_OFF).then(|| fault(given.to_string()))
+            }
+            Value::Object(_) if !at.is_empty() => Some(fault("a function of the place".to_owned())),
+            _ => None,
+        }
     });
-    let axis = number(case, AXIS).filter(|given| {
+    let axis = given.pointer(AXIS).filter(|given| {
         let own = number(values, AXIS).unwrap_or(0.0);
-        (given - own).abs() > ROUND_OFF * own.abs()
+        let differs = |given: f64| (given - own).abs() > ROUND_OFF * own.abs();
+        given.as_f64().map_or(given.is_object(), differs)
     });
     let axis = axis.map(|given| {
         let what = format!("{given}, which is not the neutral axis of the section");
-        Violation::new(Code::Range, AXIS, what).hint("leave it out; reference_axis_m moves the line of ends and loads")
+        let fault = Violation::new(Code::Range, format!("{at}{AXIS}"), what);
+        fault.hint("leave it out; reference_axis_m moves the line of ends and loads")
     });
+    contradictions.chain(axis).collect()
+}
+
+/// Fault of a lower row of a case that is not that of its section.
+fn other_lower_row(case: &Value, values: &Value) -> Option<Violation> {
     let mirrored = json!("mirrored");
     let own = values.pointer(LOWER).unwrap_or(&mirrored);
-    let lower = case
-        .pointer(LOWER)
-        .filter(|given| *given != own && values.get("bladders").is_some());
-    let lower = lower.map(|_| {
-        let what = "the section defines the lower row";
-        Violation::new(Code::Range, LOWER, what).hint("leave it out; change /section/bladders/lower")
-    });
-    contradictions.chain(axis).chain(lower).collect()
+    let given = case.pointer(LOWER);
+    given.filter(|given| *given != own && values.get("bladders").is_some())?;
+    let fault = Violation::new(Code::Range, LOWER, "the section defines the lower row");
+    Some(fault.hint("leave it out; change /section/bladders/lower"))
 }
 
 /// Reads a section at a pointer of its file.
@@ -233,11 +248,14 @@ fn read(value: &Value, at: &str) -> std::result::Result<Section, Box<Violation>>
     })
 }
 
-/// Removes the section from a case.
+/// Removes the sections from a case.
 pub(super) fn remove(case: &mut Value) {
-    if let Some(case) = case.as_object_mut() {
-        case.shift_remove(KEY);
-    }
+    let remove = |from: &mut Value| from.as_object_mut().map(|from| from.shift_remove(KEY));
+    remove(case);
+    let spans = case.get_mut("spans").and_then(Value::as_array_mut);
+    spans.into_iter().flatten().for_each(|span| {
+        remove(span);
+    });
 }
 
 /// Values of a preset that replace those of a section.
@@ -254,116 +272,30 @@ fn stand_in(case: &Value) -> Value {
     json!({"beam": preset["beam"], "bladders": preset["bladders"]})
 }
 
-/// Values that a case takes from its section. A bladder has its size along the beam as width, and the height of a rectangle of equal area,
-/// so that volumes and masses are correct.
+/// Values that a case takes from its section.
 fn values(case: &Value, section: &Section) -> std::result::Result<Value, Vec<Violation>> {
-    let found = computed::coefficients(section).map_err(|error| violations(error, AT))?;
-    let (c, e) = (&found.numbers, &found.errors);
-    let worst = [
-        ("axial_stiffness_factor", e.axial_stiffness_factor),
-        ("bending_stiffness_factor", e.bending_stiffness_factor),
-        ("shear_stiffness_n", e.shear_stiffness_n),
-        ("area_per_pressure_m2_per_pa", e.area_per_pressure_m2_per_pa),
-        ("area_per_other_pressure_m2_per_pa", e.area_per_other_pressure_m2_per_pa),
-        ("area_per_moment_m2_per_n_m", e.area_per_moment_m2_per_n_m),
-        ("area_per_force_m2_per_n", e.area_per_force_m2_per_n),
-        ("permeability_m4", e.permeability_m4),
-    ];
+    let (mut values, mut faults) = unit_cell::values(section, AT)?;
     let fault = |place: &str, what: String| Violation::new(Code::Range, format!("{AT}{place}"), what);
-    let most = if section.three_d { COARSE_IN_SPACE } else { COARSE };
-    let coarse = worst.into_iter().filter(|(_, error)| *error > most);
-    let mut faults: Vec<Violation> = coarse
-        .map(|(name, error)| {
-            fault("", format!("{name} has an estimated error of {:.1} %", 100.0 * error))
-                .allowed(format!("at most {:.0} %", 100.0 * most))
-        })
-        .collect();
-    let solid = section.height_m * section.width_m - c.fluid_volume_per_length_m2;
-    let density = match section.regions.is_empty() {
-        true => section.material.density_kg_m3,
-        false => c.solid_mass_kg_per_m / solid,
-    };
-    let mut values = json!({"beam": {
-        "height_m": section.height_m,
-        "width_m": section.width_m,
-        "young_modulus_pa": section.material.young_modulus_pa,
-        "density_kg_m3": density,
-        "axial_stiffness_factor": c.axial_stiffness_factor,
-        "bending_stiffness_factor": c.bending_stiffness_factor,
-        "shear_stiffness_n": c.shear_stiffness_n,
-    }});
-    let about = AboutNeutralAxis::new(section, c);
-    let mirrored = about.offset == 0.0;
-    if !mirrored {
-        values["beam"]["axial_stiffness_factor"] = about.axial_stiffness_factor.into();
-        values["beam"]["neutral_axis_m"] = about.offset.into();
-    }
-    match (&c.upper, &c.lower) {
-        (None, None) => {}
-        (None, Some(_)) => {
-            let what = "only the lower row has bladders".to_owned();
-            faults
-                .push(fault("/bladders/upper", what).hint("turn the section over: describe the row as the upper one"));
+    if unit_cell::rows(section) == SpanRows::Lower {
+        let what = "only the lower row has bladders".to_owned();
+        faults.push(fault("/bladders/upper", what).hint("turn the section over: describe the row as the upper one"));
+    } else if values.get("bladders").is_some() {
+        // an energy that the case gives, as that of a result does, or omits by null is not computed
+        let given = |energy: &Value| energy.is_null() || energy.get("coefficients_n").is_some();
+        if !case.pointer(ENERGY).is_some_and(given) {
+            let energy = computed::strain_energy(section).map_err(|error| violations(error, AT))?;
+            energy
+                .iter()
+                .for_each(|energy| values["bladders"]["strain_energy"] = computed::written(energy));
         }
-        (Some(upper), lower) => {
-            let along = section.bladders.along();
-            let slopes = |(of_moment, of_force): (f64, f64)| {
-                json!({
-                    "area_per_moment_m2_per_n_m": {"opening": of_moment, "closing": of_moment},
-                    "area_per_force_m2_per_n": {"tension": of_force, "compression": of_force},
-                })
-            };
-            let alike = mirrored
-                && lower.as_ref().is_some_and(|lower| {
-                    (lower.area_per_moment_m2_per_n_m / upper.area_per_moment_m2_per_n_m - 1.0).abs() <= ALIKE
-                });
-            values["bladders"] = json!({
-                "length_m": section.bladders.length_m,
-                "width_m": along,
-                "height_m": upper.area_m2 / along,
-                "permeability_m4": c.permeability_m4,
-                "area_per_pressure_m2_per_pa": c.area_per_pressure_m2_per_pa,
-            });
-            let cross = c.area_per_other_pressure_m2_per_pa;
-            if lower.is_some() && cross.abs() > CROSS * c.area_per_pressure_m2_per_pa {
-                values["bladders"]["area_per_other_pressure_m2_per_pa"] = cross.into();
-            }
-            let mut own = slopes((c.area_per_moment_m2_per_n_m, c.area_per_force_m2_per_n));
-            if !alike {
-                own = slopes(about.slopes(upper, 1.0));
-                own["permeability_m4"] = upper.permeability_m4.into();
-                own["area_per_pressure_m2_per_pa"] = upper.area_per_pressure_m2_per_pa.into();
-                own["lower"] = match lower {
-                    None => json!("none"),
-                    Some(lower) => {
-                        let mut row = slopes(about.slopes(lower, -1.0));
-                        row["height_m"] = (lower.area_m2 / along).into();
-                        row["area_per_pressure_m2_per_pa"] = lower.area_per_pressure_m2_per_pa.into();
-                        row["permeability_m4"] = lower.permeability_m4.into();
-                        json!({"unlike": row})
-                    }
+        match per_row(case, section.pitch_m) {
+            Ok(number) => values["bladders"]["per_row"] = number.into(),
+            Err(what) => {
+                let fault = match case.pointer(PER_ROW) {
+                    Some(_) => Violation::new(Code::Range, PER_ROW, what).beside(&["/beam/length_m", PITCH]),
+                    None => fault("/pitch_m", what).beside(&["/beam/length_m"]),
                 };
-            }
-            if let (Some(all), Value::Object(own)) = (values["bladders"].as_object_mut(), own) {
-                all.extend(own);
-            }
-            // an energy that the case gives, as that of a result does, or omits by null is not computed
-            let given = |energy: &Value| energy.is_null() || energy.get("coefficients_n").is_some();
-            if !case.pointer(ENERGY).is_some_and(given) {
-                let energy = computed::strain_energy(section).map_err(|error| violations(error, AT))?;
-                energy
-                    .iter()
-                    .for_each(|energy| values["bladders"]["strain_energy"] = computed::written(energy));
-            }
-            match per_row(case, section.pitch_m) {
-                Ok(number) => values["bladders"]["per_row"] = number.into(),
-                Err(what) => {
-                    let fault = match case.pointer(PER_ROW) {
-                        Some(_) => Violation::new(Code::Range, PER_ROW, what).beside(&["/beam/length_m", PITCH]),
-                        None => fault("/pitch_m", what).beside(&["/beam/length_m"]),
-                    };
-                    faults.push(fault.hint("/beam/length_m is a whole number of pitches"));
-                }
+                faults.push(fault.hint("/beam/length_m is a whole number of pitches"));
             }
         }
     }
@@ -378,7 +310,6 @@ fn per_row(case: &Value, pitch: f64) -> std::result::Result<u64, String> {
     let Some(length) = case.pointer("/beam/length_m").and_then(Value::as_f64) else {
         return Ok(1000);
     };
-    let spans = case.get("spans").and_then(|spans| Vec::<Span>::deserialize(spans).ok());
-    let given = case.pointer("/bladders/per_row").and_then(Value::as_f64);
-    segments_of_pitch(&spans.unwrap_or_default(), length, given, pitch)
+    let given = case.pointer(PER_ROW).and_then(Value::as_f64);
+    segments_of_pitch(&Span::outlines(case), length, given, pitch)
 }

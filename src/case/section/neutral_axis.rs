@@ -3,7 +3,7 @@
 use slcbeam_section::coefficients::{Numbers, RowCoefficients};
 use slcbeam_section::input::Section;
 
-use super::ALIKE;
+use super::unit_cell::ALIKE;
 
 /// Stiffness and areas about the neutral axis, from the compliance about mid-height: with `M = M_n + d N`,
 ///
