@@ -100,15 +100,17 @@ fn remarks(schema: &mut Value) {
     }
 }
 
-/// Schema of a section in a file of its own or in a case, and the pointer of the section.
-pub(super) fn section(of_case: bool) -> (Value, &'static str) {
+/// Schema of a file with a section: a case with its own one, a case with that of a span, or the section alone.
+pub(super) fn section(of_case: bool, of_span: bool) -> Value {
     let section = json!({"$ref": "#/$defs/Section"});
-    let mut schema = match of_case {
-        true => json!({"type": "object", "properties": {"section": section}}),
-        false => section,
+    let holder = |section: &Value| json!({"type": "object", "properties": {"section": section}});
+    let mut schema = match (of_case, of_span) {
+        (_, true) => json!({"type": "object", "properties": {"spans": {"type": "array", "items": holder(&section)}}}),
+        (true, false) => holder(&section),
+        (false, false) => section,
     };
     schema["$defs"] = CASE["$defs"].clone();
-    (schema, if of_case { "/section" } else { "" })
+    schema
 }
 
 /// Schema of a case whose preset is filled in and whose remarks are removed.

@@ -21,9 +21,12 @@ use crate::output::numbers::significant;
 /// `coefficients`.
 #[derive(Debug, Args)]
 pub struct CoefficientsArguments {
-    /// A section, or a case that has one under `section`
+    /// A section, or a case that has one under `section` or in a span
     #[command(flatten)]
     pub case: CaseArguments,
+    /// Compute the section of this span of the case; the first span is 0
+    #[arg(long, value_name = "N")]
+    pub span: Option<usize>,
     /// Solve the cell in three dimensions too, and say how far the plane one is off
     #[arg(long)]
     pub three_d: bool,
@@ -55,7 +58,7 @@ pub fn coefficients(asked: &CoefficientsArguments) -> Result<ExitCode> {
     let text = case::text(&asked.case.case)?;
     // while standard input is read, Ctrl-C still ends the program
     asked.wall.flag();
-    let mut written = section::parse(&text, &asked.case.case, &asked.case.sets)?;
+    let mut written = section::parse(&text, &asked.case.case, &asked.case.sets, asked.span)?;
     // beside the cell in three dimensions, the table shows the plane cell
     written.section.three_d &= !asked.three_d;
     if let Some(path) = &asked.case_file {

@@ -17,5 +17,6 @@ mod scaling;
 mod section;
 mod shipped;
 mod signals;
+mod span_sections;
 mod strength;
 mod units;

@@ -319,13 +319,20 @@ fn lower_row(case: &Case, bladders: &Bladders, faults: &mut Violations) {
     }
 }
 
-/// Length of the longest segment [m]; each segment of a span is checked by itself.
+/// Length of the longest segment [m] that may have bladders of the width of the case; each segment of a span is checked by itself.
 fn longest_segment(case: &Case) -> f64 {
-    let lengths = match spans::countable(case) {
-        true => spans::segment_lengths(case),
-        false => vec![],
+    if !spans::countable(case) {
+        return 0.0;
+    }
+    let places = spans::places(case);
+    let of_case = |k: usize| {
+        places
+            .get(k)
+            .is_none_or(|(span, _)| case.spans[*span].section.is_none())
     };
-    lengths.into_iter().fold(0.0, f64::max)
+    let lengths = spans::segment_lengths(case).into_iter().enumerate();
+    let lengths = lengths.filter_map(|(k, length)| of_case(k).then_some(length));
+    lengths.reduce(f64::max).unwrap_or(f64::INFINITY)
 }
 
 /// True if a bladder is wider than a segment is long.

@@ -9,7 +9,7 @@ use slcbeam_section::finite::StrainEnergy;
 use slcbeam_section::input::Section;
 use slcbeam_section::three::Spatial;
 
-use super::{KEY, read, violations};
+use super::{AT, KEY, read, violations};
 use crate::case::faults::{CaseSource, Violations};
 use crate::case::{computed, parse as json, schema_json, sets, validate};
 use crate::error::{Code, Result, Violation};
@@ -20,7 +20,7 @@ pub struct SectionFile {
     /// The section.
     pub section: Section,
     source: CaseSource,
-    at: &'static str,
+    at: String,
 }
 
 impl SectionFile {
@@ -58,15 +58,15 @@ impl SectionFile {
     }
 
     fn solved<T>(&self, found: std::result::Result<T, Error>) -> Result<T> {
-        found.map_err(|error| self.source.fault(violations(error, self.at)))
+        found.map_err(|error| self.source.fault(violations(error, &self.at)))
     }
 }
 
-/// Reads a section from the text of its own file, or of a case that has one.
+/// Reads a section from the text of its own file, or of a case that has one; with the number of a span, that of the span.
 ///
 /// # Errors
 /// [`crate::error::Error::Case`] with the unreadable parts.
-pub fn parse(text: &str, path: &Path, sets: &[String]) -> Result<SectionFile> {
+pub fn parse(text: &str, path: &Path, sets: &[String], span: Option<usize>) -> Result<SectionFile> {
     let source = CaseSource::new(path, text);
     let (file, violations) = json::parse(text);
     let Some(file) = file.filter(|_| violations.is_empty()) else {
@@ -79,21 +79,51 @@ pub fn parse(text: &str, path: &Path, sets: &[String]) -> Result<SectionFile> {
         ..source
     };
     let of_case = value.get(KEY).is_some();
-    if !of_case && value.get("ends").is_some() {
-        let what = "this case has no section: it gives its coefficients directly or by a preset";
-        let fault = Violation::new(Code::Missing, "", what);
-        let hint = "slcbeam check prints its coefficients; slcbeam new section writes a section";
-        return Err(source.error(vec![fault.hint(hint)]));
+    let at = match span {
+        Some(span) => format!("/spans/{span}/{KEY}"),
+        None if of_case => AT.to_owned(),
+        None => String::new(),
+    };
+    if value.pointer(&at).is_none() || (at.is_empty() && value.get("ends").is_some()) {
+        return Err(source.fault(vec![without_section(&value, span)]));
     }
-    let (schema, at) = schema_json::section(of_case);
+    let schema = schema_json::section(of_case, span.is_some());
     let mut faults = Violations::default();
     validate::validate(&value, &value, &schema, &mut faults);
-    match value.pointer(at).map(|section| read(section, at)) {
+    match value.pointer(&at).map(|section| read(section, &at)) {
         Some(Ok(section)) if faults.is_empty() => return Ok(SectionFile { section, source, at }),
-        Some(Err(violation)) if !faults.any_below(at) => faults.push(*violation),
+        Some(Err(violation)) if !faults.any_below(&at) => faults.push(*violation),
         _ => {}
     }
     Err(source.error(faults.placed(&source)))
+}
+
+/// Fault of a case without section, or of a span without section.
+fn without_section(case: &Value, span: Option<usize>) -> Violation {
+    let spans = case.get("spans").and_then(Value::as_array);
+    let own = spans
+        .into_iter()
+        .flatten()
+        .enumerate()
+        .filter(|(_, span)| span.get(KEY).is_some());
+    let own: Vec<String> = own.map(|(k, _)| k.to_string()).collect();
+    let own = (!own.is_empty()).then(|| own.join(", "));
+    match (span, own) {
+        (Some(span), own) => {
+            let fault = Violation::new(Code::Missing, "/spans", format!("span {span} has no section"));
+            let allowed = own.map_or_else(|| "no span has a section".to_owned(), |own| format!("--span {own}"));
+            fault.allowed(allowed)
+        }
+        (None, Some(own)) => {
+            let fault = Violation::new(Code::Missing, "", "this case has sections in spans only");
+            fault.hint(format!("--span N computes that of a span: {own}"))
+        }
+        (None, None) => {
+            let what = "this case has no section: it gives its coefficients directly or by a preset";
+            let hint = "slcbeam check prints its coefficients; slcbeam new section writes a section";
+            Violation::new(Code::Missing, "", what).hint(hint)
+        }
+    }
 }
 
 /// True if the value of a file is a section on its own, and not a case.

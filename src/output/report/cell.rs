@@ -1,4 +1,4 @@
-//! The cell of a case's section under each of its four loads, and the outlines of its bladders.
+//! The cells of a case's sections under each of their four loads, and the outlines of bladders.
 
 use serde_json::{Value, json};
 use slcbeam_section::cell::bladders;
@@ -7,6 +7,7 @@ use slcbeam_section::geometry::outline::Outline;
 use slcbeam_section::input::Section;
 
 use super::base64;
+use crate::case::Case;
 use crate::output::numbers::significant;
 use crate::output::plot::cell;
 
@@ -17,8 +18,27 @@ const LOADS: [(&str, &str); 4] = [
     ("Pressure, lower row", "Pa"),
 ];
 
-/// One picture for each load that moves the cell; empty if the cell cannot be solved.
-pub fn pictures(section: &Section) -> Vec<Value> {
+/// Largest number of sections with pictures.
+const MOST: usize = 4;
+
+/// Pictures of the section of a case and of the first other ones of its spans.
+pub fn of_case(case: &Case) -> Vec<Value> {
+    let mut all: Vec<(String, &Section)> = case.section.iter().map(|own| (String::new(), own)).collect();
+    for (k, span) in case.spans.iter().enumerate() {
+        if let Some(own) = span
+            .section
+            .as_ref()
+            .filter(|own| all.iter().all(|(_, known)| known != own))
+        {
+            all.push((format!(", /spans/{k}"), own));
+        }
+    }
+    let shown = all.iter().take(MOST);
+    shown.flat_map(|(at, section)| pictures(section, at)).collect()
+}
+
+/// One picture for each load that moves the cell, with an ending of their titles; empty if the cell cannot be solved.
+fn pictures(section: &Section, ending: &str) -> Vec<Value> {
     let options = Options {
         meshes: 2,
         ..Options::default()
@@ -29,7 +49,7 @@ pub fn pictures(section: &Section) -> Vec<Value> {
     let one = |(load, (name, unit)): (usize, (&str, &str))| {
         let drawn = cell::draw(&found, load)?;
         Some(json!({
-            "title": name,
+            "title": format!("{name}{ending}"),
             "picture": base64::image("image/svg+xml", drawn.svg.as_bytes()),
             "about": format!("1 {unit}, displacements × {}", significant(drawn.factor, 1)),
         }))

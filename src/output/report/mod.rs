@@ -226,12 +226,11 @@ impl<'a> Place<'a> {
             name: name.into(),
             ..Page::default()
         };
-        let section = self.case.as_ref().and_then(|c| c.section.as_ref());
         let text = self.case_text.as_ref().filter(|text| text.len() < LARGEST_TEXT);
         page.fill(json!({
             "kind": kind.name(), "version": env!("CARGO_PKG_VERSION"), "made": head.map(Head::describe), "name": name,
             "about": self.case.as_ref().map_or("", |c| c.about.as_str()), "files": self.files(),
-            "cell": section.map_or_else(Vec::new, cell::pictures), "scene": self.case.as_ref().and_then(scene::to_json),
+            "cell": self.case.as_ref().map_or_else(Vec::new, cell::of_case), "scene": self.case.as_ref().and_then(scene::to_json),
             // placeholder: see `text`
             "parameters": null, "case_text": text, "characteristic": numbers,
         }));
