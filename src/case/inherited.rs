@@ -9,7 +9,7 @@ use super::own_cell::OwnCell;
 use super::scaling::{LAWS, Law, Sizes};
 use super::schema::{Case, SpanRows};
 use super::spans;
-use crate::error::Code;
+use crate::error::{Code, listed};
 
 /// Pointer of a coefficient, and its value if it is a number.
 type Coefficient = (&'static str, Option<f64>);
@@ -168,13 +168,12 @@ fn plane_cell(case: &Case) -> Option<String> {
     });
     let all: Vec<(String, f64)> = of_case.into_iter().chain(in_spans).collect();
     let largest = all.iter().map(|(_, excess)| *excess).reduce(f64::max)?;
-    let places: Vec<&str> = all.iter().map(|(at, _)| at.as_str()).collect();
     Some(Code::PlaneCell.warning(format!(
         "coefficients of a plane cell leave out the ends of bladders: areas per moment and force are about {:.0} % too \
          large (limit {:.0} %). Set \"three_d\": true in {}",
         100.0 * largest,
         100.0 * WARNING_LIMIT,
-        places.join(", ")
+        listed(all.iter().map(|(at, _)| at.as_str()))
     )))
 }
 

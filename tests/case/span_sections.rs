@@ -64,13 +64,22 @@ fn column(memory: &Memory, name: &str) -> Vec<f64> {
     memory.column(name).unwrap_or_else(|| panic!("no column {name}"))
 }
 
+/// Runs `slcbeam coefficients` with a section or a case.
+fn coefficients(input: &Value, arguments: &[&str]) -> std::process::Output {
+    let mut command = assert_cmd::Command::cargo_bin("slcbeam").unwrap();
+    command.args(["coefficients", "-"]).args(arguments);
+    command.write_stdin(input.to_string()).output().unwrap()
+}
+
 /// Numbers that `slcbeam coefficients --case` writes for a section, in the form of a span.
 fn copied(section: &Value, segments: usize) -> Value {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("own.json");
-    let mut command = assert_cmd::Command::cargo_bin("slcbeam").unwrap();
-    command.args(["coefficients", "-", "--case", path.to_str().unwrap()]);
-    command.write_stdin(section.to_string()).assert().success();
+    assert!(
+        coefficients(section, &["--case", path.to_str().unwrap()])
+            .status
+            .success()
+    );
     let mut case: Value = serde_json::from_str(&std::fs::read_to_string(path).unwrap()).unwrap();
     let rows = match case["bladders"].get("lower") {
         None => "both",
@@ -119,6 +128,10 @@ fn a_span_has_the_numbers_of_its_section() {
         warnings.iter().all(|warning| !warning.starts_with("W017")),
         "{warnings:?}"
     );
+    let printed = coefficients(&inline, &["--json", "--span", "1"]);
+    assert_eq!(printed.stdout, coefficients(&small(), &["--json"]).stdout);
+    let absent = coefficients(&inline, &["--span", "0"]);
+    assert!(String::from_utf8_lossy(&absent.stderr).contains("span 0 has no section"));
     // a coefficient of the span has priority
     let measured = read(
         &inline,

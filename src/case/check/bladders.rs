@@ -328,7 +328,7 @@ fn longest_segment(case: &Case) -> f64 {
     let of_case = |k: usize| {
         places
             .get(k)
-            .is_none_or(|(span, _)| case.spans[*span].section.is_none())
+            .is_none_or(|(span, _)| case.spans[*span].bladders.width_m.is_none())
     };
     let lengths = spans::segment_lengths(case).into_iter().enumerate();
     let lengths = lengths.filter_map(|(k, length)| of_case(k).then_some(length));

@@ -58,9 +58,10 @@ impl SpanSections {
         let readable = given
             .iter()
             .filter_map(|(k, span, section)| Some((*k, *span, read(section, "").ok()?)));
-        let known: Vec<_> = readable
-            .map(|(k, span, section)| SpanSection::new(case, span, k, section))
-            .collect();
+        let lengths = if given.is_empty() { vec![] } else { lengths(case) };
+        let length = |k: usize| lengths.get(k).copied().flatten();
+        let known = readable.map(|(k, span, section)| SpanSection::new(span, k, section, length(k)));
+        let known: Vec<_> = known.collect();
         let fitting = known.len() == given.len() && known.iter().all(|one| one.fitting);
         Self { known, fitting }
     }
@@ -172,7 +173,7 @@ fn agree(given: &Value, own: Option<&Value>) -> bool {
 }
 
 impl SpanSection {
-    fn new(case: &Value, span: &Value, k: usize, section: Section) -> Self {
+    fn new(span: &Value, k: usize, section: Section, length: Option<f64>) -> Self {
         let at = format!("/spans/{k}");
         let own = format!("{at}/{KEY}");
         let (mut values, mut faults) = match of_span(&section, &own) {
@@ -186,7 +187,7 @@ impl SpanSection {
         values["rows"] = json!(rows);
         let mut misfits: Vec<Violation> = other_rows(span, &values["rows"], &at).into_iter().collect();
         let bladders = rows != SpanRows::None;
-        if bladders && let Some(length) = length_of(case, k).filter(|length| *length > 0.0 && section.pitch_m > 0.0) {
+        if bladders && let Some(length) = length.filter(|length| *length > 0.0 && section.pitch_m > 0.0) {
             let found = whole_pitches(length, section.pitch_m);
             let (Ok(count) | Err(count)) = found;
             if count <= MOST {
@@ -244,16 +245,16 @@ fn of_span(section: &Section, at: &str) -> Result<(Value, Vec<Violation>), Vec<V
     Ok((values, faults))
 }
 
-/// Length of a span [m], if the lengths of a case are readable.
-fn length_of(case: &Value, k: usize) -> Option<f64> {
+/// Length of each span of a case [m], if its lengths are readable.
+fn lengths(case: &Value) -> Vec<Option<f64>> {
     let spans = Span::outlines(case);
     let preset = || case.get("preset").map(|_| Preset::MatiaGatBeam.values());
     let own = case.pointer("/beam/length_m").and_then(Value::as_f64);
     let total = own.or_else(|| preset()?.pointer("/beam/length_m")?.as_f64());
-    spans
-        .get(k)?
-        .length_m
-        .or_else(|| Some(Span::lengths(&spans, total?)[k]))
+    match total {
+        Some(total) => Span::lengths(&spans, total).into_iter().map(Some).collect(),
+        None => spans.iter().map(|span| span.length_m).collect(),
+    }
 }
 
 /// Fault of a span at a pointer that gives other rows than its section has.

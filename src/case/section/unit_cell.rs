@@ -132,7 +132,7 @@ pub(super) fn values(section: &Section, at: &str) -> Result<(Value, Vec<Violatio
 
 /// `f_m` of a section with a fluid of this density [kg/m^3]: mass of solid and fluid over that of a full section of the solid.
 pub(super) fn mass_factor(section: &Section, values: &Value, fluid_density: f64) -> Option<f64> {
-    let c = computed::coefficients(section).ok()?.numbers;
     let full = values.pointer("/beam/density_kg_m3")?.as_f64()? * section.height_m * section.width_m;
+    let c = computed::coefficients(section).ok()?.numbers;
     Some((c.solid_mass_kg_per_m + fluid_density * c.fluid_volume_per_length_m2) / full)
 }
