@@ -117,7 +117,7 @@ impl Origins {
             };
             Some((pointer, origin))
         });
-        let in_spans = of_spans.origins(own, &COEFFICIENTS).into_iter();
+        let in_spans = of_spans.origins(own, whole, &COEFFICIENTS).into_iter();
         let in_spans = in_spans.map(|(pointer, origin)| match is_set(sets, &pointer) {
             true if origin == Origin::Case => (pointer, Origin::Set),
             _ => (pointer, origin),

@@ -98,6 +98,15 @@ impl Parameter {
                 PARTS.join(", /")
             ));
         }
+        let span = in_span
+            .rsplit('/')
+            .next()
+            .and_then(|k| case.spans.get(k.parse::<usize>().ok()?));
+        if inner == "/length_m" && span.is_some_and(|span| span.section.is_some()) {
+            return usage(
+                "the span has a section, and the distance of its bladders would change with the length".into(),
+            );
+        }
         let stiffness = case.origins.get(&format!("{in_span}/beam/axial_stiffness_factor"));
         if section::SIZES.contains(&inner) && matches!(stiffness, Some(Origin::Section { .. })) {
             return usage(

@@ -80,7 +80,7 @@ fn without_nulls(case: &mut Value) {
 }
 
 /// Adds to `value` the members that only `other` has; removes members that are `null`.
-pub(super) fn fill(value: &mut Value, other: Value) {
+fn fill(value: &mut Value, other: Value) {
     let (Value::Object(own), Value::Object(given)) = (value, other) else {
         return;
     };

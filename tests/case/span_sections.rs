@@ -132,6 +132,10 @@ fn a_span_has_the_numbers_of_its_section() {
     assert_eq!(printed.stdout, coefficients(&small(), &["--json"]).stdout);
     let absent = coefficients(&inline, &["--span", "0"]);
     assert!(String::from_utf8_lossy(&absent.stderr).contains("span 0 has no section"));
+    let mut null = inline.clone();
+    null["spans"][1]["beam"] = json!(null);
+    null["spans"][1]["bladders"] = json!({"height_m": null});
+    assert_eq!(segments(&read(&null, &[]).unwrap()), segments(&case));
     // a coefficient of the span has priority
     let measured = read(
         &inline,
@@ -355,7 +359,11 @@ fn the_case_of_a_result_keeps_the_sections_of_spans() {
     let numbers = read(&result, &["/spans/1/section=null"]).unwrap();
     assert_eq!(segments(&numbers), segments(&case));
     let find = |pointer: &str| slcbeam::case::parameter::Parameter::find(&case, pointer);
-    for pointer in ["/spans/1/section/height_m", "/spans/1/beam/height_m"] {
+    for pointer in [
+        "/spans/1/section/height_m",
+        "/spans/1/beam/height_m",
+        "/spans/1/length_m",
+    ] {
         assert!(find(pointer).unwrap_err().to_string().contains("section"), "{pointer}");
     }
     let factor = find("/spans/1/beam/bending_stiffness_factor").unwrap();

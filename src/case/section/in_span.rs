@@ -7,7 +7,7 @@ use super::{KEY, ROUND_OFF, contradictions, read, unit_cell};
 use crate::case::faults::{Violations, is_below};
 use crate::case::numbers::rounded;
 use crate::case::origins::Origin;
-use crate::case::presets::{Preset, fill};
+use crate::case::presets::Preset;
 use crate::case::schema::{Span, SpanRows, whole_pitches};
 use crate::case::{parameter, sets};
 use crate::error::numbers::counted;
@@ -79,7 +79,7 @@ impl SpanSections {
             let outline = ["rows", "segments"].map(|key| (key.to_owned(), one.values[key].clone()));
             let outline = outline.into_iter().filter(|(_, value)| !value.is_null());
             if let Some(span) = case.pointer_mut(&one.at) {
-                fill(span, Value::Object(outline.collect()));
+                add(span, Value::Object(outline.collect()));
             }
         }
     }
@@ -104,7 +104,7 @@ impl SpanSections {
                 }
             }
             if let Some(span) = case.pointer_mut(&one.at) {
-                fill(span, values);
+                add(span, values);
             }
         }
     }
@@ -136,27 +136,36 @@ impl SpanSections {
         }
     }
 
-    /// Origins of the coefficients at some pointers of a case that the spans of `own` do not give otherwise.
-    pub fn origins(&self, own: &Value, pointers: &[&str]) -> Vec<(String, Origin)> {
-        let of = |one: &SpanSection, pointer: &str| {
-            let value = one.values.pointer(pointer)?;
-            let at = format!("{}{pointer}", one.at);
-            let from_section = own.pointer(&at).is_none_or(|given| agree(given, Some(value)));
-            let three_d = one.section.three_d;
-            Some((
-                at,
-                if from_section {
-                    Origin::Section { three_d }
-                } else {
-                    Origin::Case
-                },
-            ))
-        };
-        let each = self
-            .known
-            .iter()
-            .flat_map(|one| pointers.iter().map(move |pointer| (one, *pointer)));
-        each.filter_map(|(one, pointer)| of(one, pointer)).collect()
+    /// Origins of the coefficients at some pointers within the spans of a complete case, of which `own` gives a part.
+    pub fn origins(&self, own: &Value, whole: &Value, pointers: &[&str]) -> Vec<(String, Origin)> {
+        let mut all = vec![];
+        for one in &self.known {
+            let (values, three_d) = (one.complete(whole), one.section.three_d);
+            for pointer in pointers {
+                let at = format!("{}{pointer}", one.at);
+                let Some(value) = whole.pointer(&at).and(values.pointer(pointer)) else {
+                    continue;
+                };
+                let given = own
+                    .pointer(&at)
+                    .filter(|given| !given.is_null() && !agree(given, Some(value)));
+                all.push((at, given.map_or(Origin::Section { three_d }, |_| Origin::Case)));
+            }
+        }
+        all
+    }
+}
+
+/// Adds to `value` the members of `other` that it lacks or that are `null` there.
+fn add(value: &mut Value, other: Value) {
+    match (value, other) {
+        (Value::Object(own), Value::Object(other)) => {
+            for (key, other) in other {
+                add(own.entry(key).or_insert(Value::Null), other);
+            }
+        }
+        (value, other) if value.is_null() => *value = other,
+        _ => {}
     }
 }
 
@@ -224,7 +233,7 @@ impl SpanSection {
 /// a span without them has those of the case.
 fn of_span(section: &Section, at: &str) -> Result<(Value, Vec<Violation>), Vec<Violation>> {
     let (mut values, mut faults) = unit_cell::values(section, at)?;
-    fill(&mut values, json!({"beam": {"neutral_axis_m": 0.0}}));
+    add(&mut values, json!({"beam": {"neutral_axis_m": 0.0}}));
     if let Some(bladders) = values.get_mut("bladders").and_then(Value::as_object_mut) {
         // the length of bladders is that of the case
         bladders.shift_remove("length_m");
@@ -237,7 +246,7 @@ fn of_span(section: &Section, at: &str) -> Result<(Value, Vec<Violation>), Vec<V
         }
     }
     if unit_cell::rows(section) == SpanRows::Both {
-        fill(
+        add(
             &mut values,
             json!({"bladders": {"area_per_other_pressure_m2_per_pa": 0.0}}),
         );
