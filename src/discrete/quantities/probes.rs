@@ -23,6 +23,8 @@ pub struct MeshProbe {
     /// Cell whose midpoint is before it, and the fraction of the distance to the next midpoint; below 0 or above 1 at
     /// the ends.
     cell: (usize, f64),
+    /// The same of two cells that no jump of the section separates, if there are two.
+    strained: (usize, f64),
     /// Segment of the probe.
     segment: usize,
     /// EI of the probe's side at both nodes, if the section jumps there [N m^2].
@@ -182,25 +184,20 @@ impl MeshProbe {
             let both = sections.bending_beside[node];
             (both[0] != both[1]).then_some(both[side])
         };
-        let (mut cell, mut share) = mesh.between_midpoints(place);
-        let [before, behind] = mesh.at_part_ends(node);
-        if cell + 1 == node && before && node > 0 {
-            // from the two cells behind the jump, or the only one
-            (cell, share) = match behind {
-                true => (node, 0.0),
-                false => (node, place - node as f64 - 0.5),
-            };
-        } else if cell == node && behind && node + 1 < mesh.cells && share > 0.0 {
-            (cell, share) = match before {
-                true => (node, 0.0),
-                false => (node - 1, place - node as f64 + 0.5),
-            };
-        }
+        let cell = mesh.between_midpoints(place);
+        let within = place - node as f64;
+        let strained = match mesh.at_part_ends(node) {
+            [true, true] if mesh.cells > 1 => (node, 0.0),
+            [true, _] if cell.0 < node => (node, within - 0.5),
+            [_, true] if cell.0 == node && node + 1 < mesh.cells => (node - 1, within + 0.5),
+            _ => cell,
+        };
         Self {
             name: name.into(),
             at,
-            node: (node, place - node as f64),
-            cell: (cell, share),
+            node: (node, within),
+            cell,
+            strained,
             segment: node / mesh.cells_per_segment,
             jumps: [jump(node, 1), jump(node + 1, 0)],
             surfaces: [0.0; 2],
@@ -214,10 +211,7 @@ impl MeshProbe {
     }
 
     fn of_cells(&self, value: impl Fn(usize) -> f64) -> f64 {
-        match self.cell {
-            (cell, 0.0) => value(cell),
-            (cell, share) => (1.0 - share) * value(cell) + share * value(cell + 1),
-        }
+        between(self.cell, value)
     }
 
     /// Angle along the chain of midpoints, `φ_{c+1} = φ_c - h κ_{c+1}`, with the full turns of the tip's angle.
@@ -262,7 +256,7 @@ impl MeshProbe {
     /// `λ - 1 + κ (±h_s/2 - z_r)`, κ relative to the rest curvature.
     fn surface(&self, look: &StateView, side: usize) -> f64 {
         let shape = &look.w.shape;
-        self.of_cells(|c| shape.strain[c])
+        between(self.strained, |c| shape.strain[c])
             + self.surfaces[side] * self.of_nodes(|i| self.node_curvature(look, i) - look.now.rest_curvature(i))
     }
 
@@ -282,7 +276,7 @@ impl MeshProbe {
         };
         let own = |i: usize| self.jumps[i - self.node.0].unwrap_or(sections.bending[i]);
         let moment = |i: usize| forces.relaxing_moment.get(i).map_or(0.0, |moment| moment / own(i));
-        let relaxing = self.of_cells(normal) + self.surfaces[side] * self.of_nodes(moment);
+        let relaxing = between(self.strained, normal) + self.surfaces[side] * self.of_nodes(moment);
         self.young_modulus * (self.surface(look, side) + relaxing)
     }
 
@@ -291,6 +285,14 @@ impl MeshProbe {
         wet.map_or(0.0, |wet| {
             look.system.pressure_of_fluid(&look.w, wet.pair(self.segment)[row])
         })
+    }
+}
+
+/// Value between a cell and the next.
+fn between((cell, share): (usize, f64), value: impl Fn(usize) -> f64) -> f64 {
+    match share {
+        0.0 => value(cell),
+        share => (1.0 - share) * value(cell) + share * value(cell + 1),
     }
 }
 
