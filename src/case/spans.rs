@@ -202,7 +202,8 @@ fn both_rows(case: &Case) -> [Value; 2] {
 pub fn first_of_other_section(case: &Case) -> Option<usize> {
     let mut usual = values(case, &both_rows(case), &Span::default(), 0.5, None);
     let unlike = |one: &SegmentValues| {
-        // mass does not strain the section
+        // mass and damping do not strain the section
+        usual.beam.damping = one.beam.damping.clone();
         usual.beam.density_kg_m3 = one.beam.density_kg_m3;
         usual.beam.mass_factor = one.beam.mass_factor;
         one.present().next().is_some() && *one != usual
@@ -347,6 +348,7 @@ fn values(case: &Case, whole: &[Value; 2], span: &Span, x: f64, length: Option<f
         false => [here(&whole[0]), here(&whole[1])],
     };
     let mut beam: Beam = serde_json::from_value(upper["beam"].take()).unwrap_or_else(|_| case.beam.clone());
+    span.beam.damping.apply(&mut beam.damping);
     if let Some(law) = &span.beam.moment_curvature {
         beam.moment_curvature = Some(law.clone());
     }

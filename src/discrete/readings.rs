@@ -136,10 +136,10 @@ fn bending(system: &System, now: &TimeData, w: &Workspace<f64>, readings: &mut F
         readings.curvature[i] = alpha / if published { node_stretch(w, i, last) } else { 1.0 };
     }
     if !w.shape.sections.angle.is_empty() {
-        let section = &system.model.section;
-        let strains = w.shape.sections.shear.iter().zip(&w.shape.sections.shear_rate);
-        for ((shear, (strain, rate)), kga) in readings.shear.iter_mut().zip(strains).zip(&system.sections.shear) {
-            *shear = kga * (strain + section.bending_damping_time * rate);
+        let (stiffness, viscosity) = (&system.sections.shear, &system.sections.shear_viscosity);
+        for (c, shear) in readings.shear.iter_mut().enumerate() {
+            let sections = &w.shape.sections;
+            *shear = stiffness[c] * sections.shear[c] + viscosity[c] * sections.shear_rate[c];
         }
         return;
     }

@@ -40,6 +40,12 @@ pub struct MeshSections {
     pub bending_of_cells: Vec<f64>,
     /// `kGA` of each cell [N]; infinite without shear.
     pub shear: Vec<f64>,
+    /// `EA τ_a` of each cell [N s].
+    pub axial_viscosity: Vec<f64>,
+    /// `EI τ_b` of each node, between two segments `EI_i² Σ s τ_b/EI`, that of slow motions of both in series [N m^2 s].
+    pub bending_viscosity: Vec<f64>,
+    /// `kGA τ_b` of each cell [N s].
+    pub shear_viscosity: Vec<f64>,
     /// `m y11` of each cell [kg m].
     pub rotary: Vec<f64>,
     /// Mass per length of each node [kg/m].
@@ -156,6 +162,16 @@ impl MeshSections {
             .collect();
         let beside = stiffness.iter().zip(&shares);
         let at_place: Vec<f64> = beside.map(|(sides, shares)| in_series(*sides, *shares)).collect();
+        let [axial, shear] = [
+            placed.means(|section| section.axial_stiffness),
+            placed.means(|section| section.shear_stiffness),
+        ];
+        let times = |time: fn(&Section) -> f64, stiffness: &[f64]| -> Vec<f64> {
+            let each = placed.in_cells(time).into_iter().zip(stiffness);
+            // infinite stiffness has no strain
+            each.map(|(time, stiffness)| if time > 0.0 { stiffness * time } else { 0.0 })
+                .collect()
+        };
         let mut smooth = SmoothBending::default();
         let mut bending = at_place.clone();
         if mesh.fourth {
@@ -165,7 +181,22 @@ impl MeshSections {
         let offset = placed.in_cells(|section| section.offset);
         let law = |segment: usize| model.bending.get(segment).unwrap_or(&model.bending[0]);
         Self {
-            axial: placed.means(|section| section.axial_stiffness),
+            axial_viscosity: times(|section| section.axial_damping_time, &axial),
+            bending_viscosity: placed
+                .beside_nodes()
+                .zip(&shares)
+                .zip(&bending)
+                .map(|((sides, shares), bending)| {
+                    let [left, right] = sides.map(|side| side.bending_damping_time);
+                    if left == right {
+                        return bending * left;
+                    }
+                    let compliant = [0, 1].map(|k| shares[k] / sides[k].bending_stiffness);
+                    bending * bending * (left * compliant[0] + right * compliant[1])
+                })
+                .collect(),
+            shear_viscosity: times(|section| section.bending_damping_time, &shear),
+            axial,
             smooth,
             bending_at_place: match bending == at_place {
                 true => vec![],
@@ -213,7 +244,7 @@ impl MeshSections {
                 true => vec![],
                 false => offset,
             },
-            shear: placed.means(|section| section.shear_stiffness),
+            shear,
             rotary: placed.means(Section::rotary_inertia),
             ambient: match &model.surroundings {
                 None => vec![],

@@ -121,6 +121,8 @@ impl Section {
             shear_stiffness: 1.0 / mean(&|one| 1.0 / one.shear_stiffness),
             ambient: AmbientSection::mean(|value| mean(&|one: &Self| value(&one.ambient))),
             gyration_radius_squared: mean(&Self::rotary_inertia) / mass,
+            axial_damping_time: mean(&|one| one.axial_damping_time),
+            bending_damping_time: mean(&|one| one.bending_damping_time),
             ..*first
         })
     }

@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value};
 use slcbeam_section::input::Section;
 
-use super::{AreaPerForce, AreaPerMoment, Case, MomentCurvature, given};
+use super::{AreaPerForce, AreaPerMoment, Case, Damping, MomentCurvature, given};
 use crate::case::numbers::rounded;
 use crate::functions::profile::Profile;
 
@@ -145,6 +145,35 @@ pub struct SpanBeam {
     /// `f_m`: mass over that of a full section of the solid.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub mass_factor: Option<Profile>,
+    /// Damping of the material.
+    #[serde(default, skip_serializing_if = "SpanDamping::is_empty")]
+    pub damping: SpanDamping,
+}
+
+/// Damping of the material of a span, as in `/beam/damping`; the drag is that of the whole beam.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct SpanDamping {
+    /// `tau_a`: `N_total = N + EA tau_a d(lambda)/dt` [s].
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schemars(range(min = 0.0))]
+    pub axial_time_s: Option<f64>,
+    /// `tau_b`: `M_total = M + EI tau_b d(kappa)/dt` [s].
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schemars(range(min = 0.0))]
+    pub bending_time_s: Option<f64>,
+}
+
+impl SpanDamping {
+    fn is_empty(&self) -> bool {
+        *self == Self::default()
+    }
+
+    /// Sets the given times of a beam.
+    pub fn apply(&self, damping: &mut Damping) {
+        damping.axial_time_s = self.axial_time_s.unwrap_or(damping.axial_time_s);
+        damping.bending_time_s = self.bending_time_s.unwrap_or(damping.bending_time_s);
+    }
 }
 
 impl SpanBeam {

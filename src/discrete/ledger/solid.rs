@@ -184,7 +184,6 @@ fn bending(
 
 /// Contributions of the cells: distributed moments, viscous forces, and the published rotary term.
 fn cells(system: &System, now: &TimeData, w: &Workspace<f64>, published: bool, out: &mut Rates) {
-    let section = &system.model.section;
     for (c, &h) in system.mesh.lengths.iter().enumerate() {
         let rotary = system.sections.rotary[c];
         if system.has_moments {
@@ -198,7 +197,7 @@ fn cells(system: &System, now: &TimeData, w: &Workspace<f64>, published: bool, o
             h * w.forces.viscous_normal[c] * w.shape.stretch_rate[c],
         );
         if let Some(rate) = w.shape.sections.shear_rate.get(c) {
-            let viscous = system.sections.shear[c] * section.bending_damping_time;
+            let viscous = system.sections.shear_viscosity[c];
             let loss = match w.forces.viscous_shear.get(c) {
                 Some(force) => h * force * rate,
                 None => h * viscous * rate * rate,

@@ -69,12 +69,19 @@ pub fn moments<T: Scalar>(system: &System, now: &TimeData, w: &mut Workspace<T>)
         w.forces.viscous_moment.fill(T::zero());
         let first = usize::from(now.ends[0].slope.is_none());
         let end = last + usize::from(now.ends[1].slope.is_some());
-        for (i, ei) in ei.iter().enumerate().take(end).skip(first) {
+        for (i, viscosity) in system
+            .sections
+            .bending_viscosity
+            .iter()
+            .enumerate()
+            .take(end)
+            .skip(first)
+        {
             let mut rate = w.shape.kappa_rate[i];
             if let Some(rest) = now.rest_curvature[1].get(i) {
                 rate -= T::constant(*rest);
             }
-            w.forces.viscous_moment[i] = rate * (ei * section.bending_damping_time);
+            w.forces.viscous_moment[i] = rate * *viscosity;
         }
         if system.mesh.fourth {
             fourth_order::moments(system, now, &mut w.forces.viscous_moment);

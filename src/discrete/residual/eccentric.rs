@@ -134,7 +134,7 @@ pub fn normal_forces<T: Scalar>(system: &System, now: &TimeData, w: &mut Workspa
         .iter()
         .zip(&w.shape.side_curvature)
         .peekable();
-    let mut left_end = None;
+    let (viscosity, mut left_end) = (&system.sections.axial_viscosity, None);
     for (c, (d, ea)) in system.sections.offset.iter().zip(&system.sections.axial).enumerate() {
         let left = left_end.take().unwrap_or(w.shape.kappa[c]);
         let mut right = w.shape.kappa[c + 1];
@@ -149,7 +149,7 @@ pub fn normal_forces<T: Scalar>(system: &System, now: &TimeData, w: &mut Workspa
             for (node, weight) in viscous_weights(system, now, c) {
                 rate += w.shape.kappa_rate[node] * weight;
             }
-            w.forces.viscous_normal[c] += rate * (d * ea * time);
+            w.forces.viscous_normal[c] += rate * (d * viscosity[c]);
         }
     }
 }

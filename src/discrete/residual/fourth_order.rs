@@ -289,10 +289,17 @@ pub fn of_stretch(system: &System, w: &Workspace<f64>, cell: usize) -> f64 {
 /// Error if a model does not allow fourth order.
 pub fn refusal(model: &Model, mesh: &BeamMesh) -> Option<Violation> {
     let eccentric = |section: &Section| section.offset != 0.0;
+    let damping = |section: &Section| [section.axial_damping_time, section.bending_damping_time];
     let what = if !mesh.fourth {
         return None;
     } else if model.published() && mesh.parts.len() > 1 {
         "the published form of a beam with spans needs a mesh of second order"
+    } else if model
+        .sections
+        .iter()
+        .any(|section| damping(section) != damping(&model.sections[0]))
+    {
+        "spans with damping of their own need a mesh of second order"
     } else if eccentric(&model.section) || model.sections.iter().any(eccentric) {
         "a neutral axis beside the beam's line needs a mesh of second order"
     } else if !model.relaxation.is_empty() {

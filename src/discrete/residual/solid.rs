@@ -182,8 +182,8 @@ pub fn normal_forces<T: Scalar>(system: &System, now: &TimeData, w: &mut Workspa
     }
     if section.axial_damping_time > 0.0 {
         let viscous = w.forces.viscous_normal.iter_mut();
-        for ((force, rate), ea) in viscous.zip(&w.shape.stretch_rate).zip(ea) {
-            *force = *rate * (*ea * section.axial_damping_time);
+        for ((force, rate), viscosity) in viscous.zip(&w.shape.stretch_rate).zip(&system.sections.axial_viscosity) {
+            *force = *rate * *viscosity;
         }
     }
     eccentric::normal_forces(system, now, w);

@@ -91,7 +91,7 @@ pub fn forces<T: Scalar>(system: &System, now: &TimeData, w: &mut Workspace<T>) 
 fn shears<T: Scalar>(system: &System, now: &TimeData, w: &mut Workspace<T>) {
     let time = system.model.section.bending_damping_time;
     let sections = &w.shape.sections;
-    let stiffness = &system.sections.shear;
+    let (stiffness, viscosity) = (&system.sections.shear, &system.sections.shear_viscosity);
     for ((force, shear), kga) in w.forces.shear.iter_mut().zip(&sections.shear).zip(stiffness) {
         *force = *shear * *kga;
     }
@@ -99,9 +99,9 @@ fn shears<T: Scalar>(system: &System, now: &TimeData, w: &mut Workspace<T>) {
         fourth_order::of_cells(system, stiffness, &mut w.forces.shear);
         arcs::forces(system, now, w);
         if time > 0.0 {
-            let rates = w.shape.sections.shear_rate.iter().zip(stiffness);
-            for (force, (rate, kga)) in w.forces.viscous_shear.iter_mut().zip(rates) {
-                *force = *rate * (*kga * time);
+            let rates = w.shape.sections.shear_rate.iter().zip(viscosity);
+            for (force, (rate, viscosity)) in w.forces.viscous_shear.iter_mut().zip(rates) {
+                *force = *rate * *viscosity;
             }
             fourth_order::of_cells(system, stiffness, &mut w.forces.viscous_shear);
             for (force, viscous) in w.forces.shear.iter_mut().zip(&w.forces.viscous_shear) {
@@ -109,9 +109,9 @@ fn shears<T: Scalar>(system: &System, now: &TimeData, w: &mut Workspace<T>) {
             }
         }
     } else if time > 0.0 {
-        let rates = w.shape.sections.shear_rate.iter().zip(stiffness);
-        for (force, (rate, kga)) in w.forces.shear.iter_mut().zip(rates) {
-            *force += *rate * (*kga * time);
+        let rates = w.shape.sections.shear_rate.iter().zip(viscosity);
+        for (force, (rate, viscosity)) in w.forces.shear.iter_mut().zip(rates) {
+            *force += *rate * *viscosity;
         }
     }
     relaxation::shears(system, w);
