@@ -4,6 +4,7 @@
 //! [`schema::Case`] -> [`check`], which resolves the network: [`wiring`]
 
 pub mod amounts;
+pub mod bladder_numbers;
 mod check;
 mod choices;
 mod computed;

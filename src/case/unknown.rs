@@ -184,20 +184,32 @@ impl<'a> KnownKeys<'a> {
         }
     }
 
-    /// Pointer to a key in a value of this object, such as a kind of signal.
+    /// Pointer to a key in a value of this object, such as a kind of signal, or in the only variant of a value that has it.
     fn inside(&self, key: &str) -> Option<String> {
-        let has = |schema: &Value| {
+        let variants = |schema: &'a Value| {
             let schema = resolved(schema);
             let branches = ["oneOf", "anyOf"]
                 .into_iter()
                 .filter_map(|kind| schema[kind].as_array())
                 .flatten();
-            std::iter::once(schema)
-                .chain(branches)
-                .any(|one| one["properties"].get(key).is_some())
+            std::iter::once(schema).chain(branches)
         };
+        let has = |schema: &'a Value| variants(schema).any(|one| one["properties"].get(key).is_some());
         let own = self.properties.iter().find(|(_, schema)| has(schema));
+        let deeper = || {
+            let members = self.properties.iter().flat_map(|(name, schema)| {
+                let of_variant = |one: &'a Value| one["properties"].as_object().into_iter().flatten();
+                let members = variants(schema).flat_map(of_variant);
+                members
+                    .filter(|(_, schema)| has(schema))
+                    .map(move |(member, _)| (name, member))
+            });
+            let all: Vec<_> = members.take(2).collect();
+            let [(name, member)] = all[..] else { return None };
+            Some(child(&child(&child(self.pointer, name), member), key))
+        };
         own.map(|(name, _)| child(&child(self.pointer, name), key))
+            .or_else(deeper)
     }
 
     /// Pointers to a key in other objects.

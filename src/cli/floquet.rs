@@ -84,6 +84,7 @@ fn one(asked: &FloquetArguments, case: &Case) -> Result<ExitCode> {
     bar.finish_and_clear();
     let mut warnings = early_warnings::without_outputs(case, &scene::system(case)?);
     warnings.extend(scene.trapped.clone());
+    warnings.extend(cycle.range(case, &scene));
     warnings.extend(meshes.as_ref().and_then(Meshes::warning));
     warnings.extend(accuracy.as_ref().and_then(refine::warning));
     let mut found = CycleResult {

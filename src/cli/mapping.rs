@@ -19,7 +19,7 @@ pub fn mapping(asked: &MappingArguments) -> Result<ExitCode> {
         return Err(Error::Usage("the case has no bladders: there is nothing to map".into()));
     };
     if !case.spans.is_empty() {
-        let what = "the tables map equal segments with two rows of bladders: they are not available with /spans";
+        let what = "the tables map equal segments with equal bladders: they are not available with /spans";
         return Err(Error::Usage(what.into()));
     }
     let map = network_coordinate(&case, wet);

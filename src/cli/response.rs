@@ -110,6 +110,7 @@ fn answer(case: &str, request: &Request, found: &BandResponse) -> Result<Respons
     };
     let about = &found.response.about;
     let mut warnings = cautions(found.growing, about.moving());
+    warnings.extend(about.range.iter().cloned());
     warnings.extend(
         found
             .unknown

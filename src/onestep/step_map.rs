@@ -26,6 +26,9 @@ const SLOW: f64 = 0.2;
 /// Number of disturbances propagated at once.
 const BLOCK: usize = 64;
 
+/// Receives the equations, the time [s] and the state at the end of every step.
+pub type StepWatcher<'a, D> = &'a mut dyn FnMut(&mut D, f64, &[f64]);
+
 /// Bytes stored per entry of the Jacobian: its value, and, with fill-in, about four entries of the factors with their indices.
 const BYTES: f64 = 80.0;
 /// Maximum memory for the factors of all stages [bytes].
@@ -159,7 +162,7 @@ impl<D: Dae> StepMap<D> {
     ///
     /// # Errors
     /// If no consistent start is found or a stage has no solution; `y` and `yp` are then meaningless.
-    pub fn go(&mut self, y: &mut [f64], yp: &mut [f64]) -> Result<(), StepError> {
+    pub fn go(&mut self, y: &mut [f64], yp: &mut [f64], look: StepWatcher<D>) -> Result<(), StepError> {
         let t0 = self.times[0];
         consistent_start(&mut self.equations.dae, t0, y, yp, &StartOptions::default())
             .map_err(|failure| StepError::new(t0, failure.to_string()))?;
@@ -193,6 +196,7 @@ impl<D: Dae> StepMap<D> {
             }
             x.swap(0, s - 1);
             self.work.steps += 1;
+            look(&mut self.equations.dae, self.times[step + 1], y);
         }
         // rates of algebraic unknowns do not appear anywhere
         for ((yp, x), mask) in yp.iter_mut().zip(&x[0]).zip(&self.mask) {

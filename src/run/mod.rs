@@ -30,6 +30,7 @@ pub mod rounding_scales;
 pub mod schedule;
 pub mod sensitivity;
 pub mod slow_fluid;
+pub mod state_range;
 pub mod step_response;
 pub mod stop;
 pub mod summary;

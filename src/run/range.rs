@@ -47,7 +47,7 @@ pub struct Limits {
     /// Pressure at or below which gas counts as evacuated [Pa].
     vacuum: f64,
     /// True if the case starts at an equilibrium.
-    at_rest: bool,
+    pub(super) at_rest: bool,
     /// Limits of physical results.
     pub unphysical: Unphysical,
 }

@@ -111,7 +111,7 @@ fn data_and_options_that_do_not_go_together() {
             good,
             [&vary[..], &["--match", "p_kpa=pressure@bladder 7"]].concat(),
             2,
-            "The upper row has bladders 1 to 1",
+            "there is no bladder 7. The case has bladders 1 (upper row)",
         ),
         (
             good,

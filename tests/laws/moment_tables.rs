@@ -6,7 +6,11 @@ use slcbeam::discrete::System;
 use slcbeam::error::Error;
 use slcbeam::model::BendingLaw;
 use slcbeam::run::equilibrium::{EquilibriumOptions, follow};
+use slcbeam::run::modes::{self, ModeOptions};
 use slcbeam::run::record::Control;
+use slcbeam::run::response::LinearResponse;
+use slcbeam::run::stop::StopFlag;
+use slcbeam::study::refine::numbers;
 
 use crate::moment_curvature::{PLATEAU, UNLIKE, cantilever, moment, table};
 use crate::spans::{faults, parse, run};
@@ -70,6 +74,40 @@ fn a_state_beyond_the_table_is_reported() {
     assert!(!path.warnings().join("\n").contains("table"));
 }
 
+/// Goal: small motions and cycles report a state beyond the table, and only such a state.
+#[test]
+fn linear_motions_and_cycles_beyond_the_table_are_reported() {
+    let said = |moment: f64| {
+        let mut case = cantilever(4, &table(PLATEAU), &json!({"moment_n_m": moment}));
+        let plan = ModeOptions {
+            count: 2,
+            near_hz: 0.0,
+            limits: false,
+        };
+        let about = modes::at_equilibrium(&parse(&case), 1.0).unwrap();
+        let small = modes::compute(about, &plan).unwrap().warnings("the state").join("\n");
+        let output = ["tip_u1".to_owned()];
+        let response = LinearResponse::new(&parse(&case), "/ends/tip/free/moment_n_m", &output, Some(1.0)).unwrap();
+        let response = response.about.range.join("\n");
+        let slow = json!({"sine": {"amplitude": moment, "frequency_hz": 2.0}});
+        case["ends"]["tip"]["free"]["moment_n_m"] = slow;
+        case["beam"]["damping"] = json!({"bending_time_s": 0.5, "axial_time_s": 0.5});
+        case["solver"]["rtol"] = json!(1e-4);
+        let case = parse(&case);
+        let (scene, mut cycle) = numbers::cycle(&case, None, &StopFlag::default()).unwrap();
+        [small, response, cycle.range(&case, &scene).join("\n")]
+    };
+    for said in said(1.9) {
+        assert!(
+            said.contains("W023") && said.contains("beyond its moment-curvature table"),
+            "{said}"
+        );
+    }
+    for said in said(0.2) {
+        assert!(!said.contains("W023"), "{said}");
+    }
+}
+
 /// Goal: tables that are no increasing curve through zero, and settings that need a linear section, are rejected with the remedy.
 #[test]
 fn mistakes_are_named() {
@@ -82,6 +120,11 @@ fn mistakes_are_named() {
         (json!([0, 2, 1]), json!([0, 1, 2]), "ascending curvatures"),
         (json!([0, 1, 2]), json!([0, 1, 0.5]), "snap-through"),
         (json!([0, 1, 2]), json!([0, 1, 1]), "rising moments"),
+        (
+            json!([0, 1, 2]),
+            json!([0, 1e-9, 1]),
+            "a slope of 1.00·10⁻⁹ N m^2, below a millionth",
+        ),
         (json!([0, 1, 2]), json!([0.1, 1, 2]), "rest_curvature_1_m"),
         (json!([1, 2]), json!([1, 2]), "no curvature 0"),
         (json!([-1, 0]), json!([-1, 0]), "no curvature 0"),

@@ -383,6 +383,23 @@ fn mistakes_are_explained() {
             assert!(text.contains(part), "{spans}: {part}\n{text}");
         }
     }
+    // a line at the neutral axis of the case is no key of the span
+    let mut thin = pumped(
+        &[1, 2, 3, 4, 5],
+        0.0,
+        &json!([{"length_m": 0.05}, {"rows": "none", "beam": {"height_m": 0.005}}]),
+    );
+    thin["beam"]["neutral_axis_m"] = json!(0.006);
+    let text = faults(&thin);
+    assert!(
+        text.contains("at /beam/neutral_axis_m") && text.contains("0.006 m, in a section 0.005 m high in /spans/1"),
+        "{text}"
+    );
+    let text = faults(&dry(10, &json!([{"rows": "none"}])));
+    assert!(
+        text.contains("/spans/0/rows") && text.contains("\"rows\" of a span without bladders"),
+        "{text}"
+    );
     for segments in [0_u64, 1_000_000_000_000_000_000, u64::MAX] {
         let mut wet = pumped(&chain, 0.0, &json!([{"length_m": 0.05}, {}]));
         wet["bladders"]["per_row"] = json!(segments);

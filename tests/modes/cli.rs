@@ -151,6 +151,50 @@ fn modes_are_numbered_by_frequency() {
     assert!(!sizes.is_sorted(), "{sizes:?}");
 }
 
+/// Goal: without a kind, oscillations beyond many decays are listed: as many as requested, the lowest ones for every count, and all of
+/// a case that has fewer. Source: all eigenvalues, of which the longest list contains every oscillation.
+#[test]
+fn the_lowest_oscillations_are_listed_for_every_count() {
+    let dir = TempDir::new().unwrap();
+    let found = |case: &str, cells: &str, count: &str| {
+        let (out, set) = (dir.path().join(count), format!("/mesh/cells_per_segment={cells}"));
+        let options = [
+            "--set",
+            &set,
+            "--count",
+            count,
+            "--quiet",
+            "--out",
+            out.to_str().unwrap(),
+        ];
+        let (code, said, error) = modes(&[&[case][..], &options].concat());
+        assert_eq!(code, 0, "{error}");
+        let text = fs::read_to_string(out.join("modes.json")).unwrap();
+        fs::remove_dir_all(&out).unwrap();
+        let json: Value = serde_json::from_str(&text).unwrap();
+        let of = |mode: &Value| mode["frequency_hz"].as_f64();
+        (
+            json["modes"]
+                .as_array()
+                .unwrap()
+                .iter()
+                .filter_map(of)
+                .collect::<Vec<f64>>(),
+            said,
+        )
+    };
+    for (case, cells) in [("cases/air-actuator.json", "1"), ("cases/tapered-finger.json", "1")] {
+        let (all, said) = found(case, cells, "300");
+        assert!(said.contains("oscillations in all") && all.len() > 8, "{said}");
+        for count in [1, 3, 8] {
+            let (listed, said) = found(case, cells, &count.to_string());
+            assert_eq!(listed.len(), count, "{said}");
+            let same = |(a, b): (&f64, &f64)| (a / b - 1.0).abs() < 1e-6;
+            assert!(listed.iter().zip(&all).all(same), "{listed:?} {all:?}");
+        }
+    }
+}
+
 /// Goal: a beam with material damping on many cells, whose overdamped vibrations have nearly equal rates, lists its oscillations, and a
 /// warning states that others are not listed. Source: the same beam on a fourth of the cells, with all eigenvalues computed.
 #[test]

@@ -76,7 +76,7 @@ fn carried_disturbances_are_differences_of_the_period_map() {
     let mut go = |d: &[f64], sign: f64| {
         let (mut y, mut yp) = (start.clone(), vec![0.0; n]);
         y.iter_mut().zip(d).for_each(|(y, d)| *y += sign * 1e-5 * d);
-        march.go(&mut y, &mut yp).unwrap();
+        march.go(&mut y, &mut yp, &mut |_, _, _| {}).unwrap();
         y
     };
     let mut d: Vec<f64> = (0..n).map(|k| (1.0 + 3.7 * k as f64).cos()).collect();
@@ -108,7 +108,7 @@ fn conserved_volumes_are_multipliers_of_one() {
     assert_eq!(scene.conserved.len(), 1, "the sealed chain; the other is open");
     let mut march = scene.map(scene.dae(), &scene.guess).unwrap();
     let (mut y, mut yp) = (scene.guess.clone(), vec![0.0; scene.guess.len()]);
-    march.go(&mut y, &mut yp).unwrap();
+    march.go(&mut y, &mut yp, &mut |_, _, _| {}).unwrap();
     let w = &scene.conserved[0];
     let dot = |a: &[f64]| a.iter().zip(w).map(|(a, w)| a * w).sum::<f64>();
     let mut d: Vec<f64> = (0..y.len()).map(|k| (2.0 + 1.3 * k as f64).cos()).collect();

@@ -46,6 +46,26 @@ fn the_six_printed_tables_come_out_to_every_digit() {
     }
 }
 
+/// Goal: a case with one row lists its bladders only, along a network of their total length.
+#[test]
+fn one_row_is_mapped_by_itself() {
+    let case = shipped(
+        "valves-open",
+        &[
+            "/bladders/lower=\"none\"",
+            "/network={\"chains\":[{\"bladders\":[1,2,3,4,5,6,7,8,9,10],\"ends\":[{\"pressure_pa\":1},\"sealed\"]}]}",
+        ],
+    );
+    let model = Model::new(&case).unwrap();
+    let map = network_coordinate(&case, model.wet.as_ref().unwrap());
+    for rows in [map.theta_to_xf(), map.xf_to_theta()] {
+        assert_eq!(rows.len(), 20);
+        assert!(rows.iter().all(|row| row.2 > 0), "{rows:?}");
+    }
+    let end = map.xf_to_theta()[19].0;
+    assert!((end - 1.0).abs() < 1e-12, "{end}");
+}
+
 #[test]
 fn the_command_prints_the_six_tables() {
     for (wiring, case) in WIRINGS {

@@ -141,6 +141,45 @@ fn what_cannot_be_told_apart_is_said() {
     }
 }
 
+/// Goal: a column of a place without bladder names the cause and the bladders that exist.
+#[test]
+fn a_place_without_bladder_is_explained() {
+    let dir = tempfile::tempdir().unwrap();
+    let file = dir.path().join("p.csv");
+    let probes = r#"/probes=[{"name":"a","at":0.005}]"#;
+    for (column, words) in [
+        (
+            "a_pressure_lower_pa",
+            "there is no bladder -1: /spans/0 has none in this row. The case has bladders -2 to -8 (lower row)",
+        ),
+        (
+            "pressure_-9_pa",
+            "there is no bladder -9: /spans/2 has none in this row",
+        ),
+        (
+            "pressure_11_pa",
+            "there is no bladder 11. The case has bladders -2 to -8",
+        ),
+    ] {
+        fs::write(&file, format!("{column}\n-2\n")).unwrap();
+        let mut command = assert_cmd::Command::cargo_bin("slcbeam").unwrap();
+        command.args([
+            "sense",
+            "cases/tapered-finger.json",
+            file.to_str().unwrap(),
+            "--set",
+            probes,
+        ]);
+        let output = command
+            .args(["--noise", "20", "--out"])
+            .arg(dir.path().join("o"))
+            .output()
+            .unwrap();
+        let said = String::from_utf8(output.stderr).unwrap();
+        assert!(said.contains(words), "{said}");
+    }
+}
+
 /// What is wrong is refused before anything is computed, in words.
 #[test]
 fn what_is_wrong_is_refused() {

@@ -3,6 +3,7 @@
 use slcbeam_section::finite::energy::monomials;
 
 use super::{coefficients, plausible};
+use crate::case::bladder_numbers;
 use crate::case::faults::Violations;
 use crate::case::numbers::rounded;
 use crate::case::schema::{
@@ -87,20 +88,7 @@ pub(super) fn existing(number: i64, case: &Case, pointer: &str, faults: &mut Vio
         return None;
     }
     let index = bladder_index(number, per_row);
-    if let Some(index) = index.filter(|index| !spans::has_bladder(case, *index)) {
-        let (cause, hint) = match spans::rows(case)[index / per_row] {
-            false => (
-                "/bladders/lower is \"none\"".to_owned(),
-                "name bladders of the upper row, or remove \"lower\"".to_owned(),
-            ),
-            true => {
-                let span = spans::places(case).get(index % per_row).map_or(0, |place| place.0);
-                let own = case.spans.get(span).and_then(|span| span.section.as_ref());
-                let rows = own.map_or("rows", |_| "section/bladders");
-                let hint = format!("change /spans/{span}/{rows}, or name other bladders; numbers count segments");
-                (format!("/spans/{span} has none in this row"), hint)
-            }
-        };
+    if let Some((cause, hint)) = bladder_numbers::absence(case, number) {
         // one fault for all bladders of a row
         let fault = Violation::new(Code::Wiring, pointer, format!("there is no bladder {number}: {cause}"));
         faults.push_once(&cause, fault.hint(hint));
@@ -108,8 +96,7 @@ pub(super) fn existing(number: i64, case: &Case, pointer: &str, faults: &mut Vio
     }
     if index.is_none() {
         let fault = Violation::new(Code::Wiring, pointer, format!("there is no bladder {number}"));
-        let allowed = format!("1 to {per_row} (upper row) and -1 to -{per_row} (lower row)");
-        faults.push(fault.allowed(allowed));
+        faults.push(fault.allowed(bladder_numbers::existing(case)));
     }
     index
 }

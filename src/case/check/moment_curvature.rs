@@ -111,10 +111,16 @@ fn points(law: &MomentCurvature, at: &str, faults: &mut Violations) {
     let slopes = || pieces().map(|(x, y)| (y[1] - y[0]) / (x[1] - x[0]));
     let least = FLATTEST * slopes().fold(0.0, f64::max);
     if let Some(k) = slopes().position(|slope| slope <= 0.0 || slope < least) {
-        let what = format!("moment {} after moment {}", plain(moments[k + 1]), plain(moments[k]));
+        let slope = (moments[k + 1] - moments[k]) / (curvatures[k + 1] - curvatures[k]);
+        let what = format!(
+            "moment {} after moment {}: a slope of {} N m^2, below a millionth of the steepest one",
+            plain(moments[k + 1]),
+            plain(moments[k]),
+            significant(slope, 3)
+        );
         let fault = Violation::new(Code::Range, format!("{at}/moment_n_m/{}", k + 1), what);
         let fault = fault.allowed(format!(
-            "rising moments, here at least {}",
+            "rising moments, here at least {} N m",
             significant(moments[k] + least.max(0.0) * (curvatures[k + 1] - curvatures[k]), 8)
         ));
         faults.push(fault.hint("give a plateau a small slope; falling moments (snap-through) are not available"));

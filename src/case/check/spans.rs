@@ -22,10 +22,15 @@ pub(super) fn check(case: &Case, faults: &mut Violations) {
             span_sections::check(case, k, section, faults);
         }
         let of_section = span.section.is_some();
-        if case.bladders.is_none() && !of_section && (span.rows != SpanRows::Both || !span.bladders.is_empty()) {
-            let what = "the span has values of bladders, but the case has no bladders";
-            let fault = Violation::new(Code::Together, format!("/spans/{k}"), what);
-            faults.push(fault.hint("add \"bladders\", or remove \"rows\" and \"bladders\" from the span"));
+        for (key, given) in [
+            ("rows", span.rows != SpanRows::Both),
+            ("bladders", !span.bladders.is_empty()),
+        ] {
+            if case.bladders.is_none() && given && !of_section {
+                let what = format!("\"{key}\" of a span without bladders: the case has none");
+                let fault = Violation::new(Code::Together, format!("/spans/{k}/{key}"), what);
+                faults.push(fault.hint("remove it for a dry beam, or add \"bladders\" to the case"));
+            }
         }
         if span.rows == SpanRows::None && !span.bladders.is_empty() {
             let what = "the span has values of bladders, but no bladders";
@@ -93,11 +98,11 @@ pub(super) fn check(case: &Case, faults: &mut Violations) {
 
 /// Checks the heights of the neutral axis and of the beam's line, and rejects settings of which the equations need both at one height.
 pub(super) fn axes(case: &Case, faults: &mut Violations) {
-    let uniform = [("/beam".to_owned(), case.beam.clone())];
+    let uniform = [(None, case.beam.clone())];
     let graded = !case.spans.is_empty() && spans::countable(case) && spans::gives_axes(case);
     let graded = graded.then(|| spans::uniform_cases(case)).into_iter().flatten();
-    let graded = graded.map(|(_, span, uniform)| (format!("/spans/{span}/beam"), uniform.beam));
-    for (at, beam) in uniform.into_iter().chain(graded) {
+    let graded = graded.map(|(_, span, uniform)| (Some(span), uniform.beam));
+    for (span, beam) in uniform.into_iter().chain(graded) {
         let half = 0.5 * beam.height_m * (1.0 + ROUNDING);
         let both = [
             (
@@ -115,7 +120,21 @@ pub(super) fn axes(case: &Case, faults: &mut Violations) {
         ];
         for (key, value, most, why) in both {
             if value.abs() > most && beam.height_m > 0.0 {
-                let what = format!("{} m, in a section {} m high", plain(value), plain(beam.height_m));
+                let mut what = format!("{} m, in a section {} m high", plain(value), plain(beam.height_m));
+                let given = span.map(|k| &case.spans[k].beam).is_none_or(|own| match key {
+                    "neutral_axis_m" => own.neutral_axis_m.is_some(),
+                    _ => own.reference_axis_m.is_some(),
+                });
+                // a span that gives no height has that of the case
+                let (at, key) = match (given, span) {
+                    (true, None) => ("/beam".to_owned(), key),
+                    (true, Some(k)) => (format!("/spans/{k}/beam"), key),
+                    _ if case.beam.reference_axis_m.is_some() => ("/beam".to_owned(), "reference_axis_m"),
+                    _ => ("/beam".to_owned(), "neutral_axis_m"),
+                };
+                if let Some(k) = span.filter(|_| !given) {
+                    what = format!("{what} in /spans/{k}");
+                }
                 let fault = Violation::new(Code::Range, format!("{at}/{key}"), what);
                 faults.push(
                     fault

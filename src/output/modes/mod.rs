@@ -1,5 +1,6 @@
 //! Output files of a modal analysis, `modes.csv`, `modes.json`, `modes.npz` and `modes.svg`, and its text.
 
+mod completeness;
 mod table;
 
 use std::io;
@@ -117,7 +118,12 @@ impl Report<'_> {
         let short = self.accuracy.and_then(refine::warning);
         let known = self.known.iter().cloned();
         let own = self.found.warnings(&self.about());
-        known.chain(still).chain(own).chain(short).collect()
+        known
+            .chain(still)
+            .chain(own)
+            .chain(self.uncertain())
+            .chain(short)
+            .collect()
     }
 
     /// Change of each mode for a 1 % change of a number of the case: `mode 2: +0.0608 Hz, −1.2e-5 1/s`.
@@ -153,6 +159,7 @@ impl Report<'_> {
         let derivatives = self.sensitivities.iter().map(|s| self.derivatives(s));
         let all: Vec<String> = [self.verdict()]
             .into_iter()
+            .chain(self.only())
             .chain(coupling)
             .chain(warnings)
             .chain(derivatives)

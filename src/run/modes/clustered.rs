@@ -4,7 +4,7 @@
 
 use nalgebra::Complex;
 
-use super::{FluidBehavior, Linearised, Mode, Shapes, Tally, failed, mode};
+use super::{FluidBehavior, Linearised, Mode, Shapes, Tally, failed, mode, reach};
 use crate::error::Result;
 use crate::spectral::{self, EigenvalueOptions, Pencil, SpectralError};
 
@@ -28,7 +28,8 @@ pub struct PartialSearch {
 }
 
 impl PartialSearch {
-    /// Finds the modes nearer than the cluster, and the oscillations beyond it.
+    /// Finds the modes nearer than the cluster, and the oscillations beyond it. Also returns the distance from zero within which
+    /// every mode is found.
     ///
     /// # Errors
     /// The search was interrupted.
@@ -38,15 +39,15 @@ impl PartialSearch {
         fluid: FluidBehavior,
         pencil: &Pencil,
         tally: &mut Tally,
-    ) -> Result<Vec<Mode>> {
+    ) -> Result<(Vec<Mode>, f64)> {
         let fewer = |count: &usize| (*count > 3).then_some(count / 2);
         let counts: Vec<usize> = std::iter::successors(Some(self.converged), fewer).collect();
-        let mut modes = near(about, fluid, pencil, (self.shift, &counts), tally)?;
+        let (mut modes, radius) = near(about, fluid, pencil, (self.shift, &counts), tally)?;
         let size = |modes: &[Mode]| modes.iter().map(|mode| mode.s.norm()).fold(0.0, f64::max);
         let moving = |modes: &[Mode]| modes.iter().filter(|mode| !mode.kind.stays()).count();
         let (mut place, mut without) = (STEP * size(&modes), 0);
         while moving(&modes) < self.wanted && without < PATIENCE && place > 0.0 {
-            let found = near(about, fluid, pencil, (Complex::new(0.0, place), &BESIDE), tally)?;
+            let (found, _) = near(about, fluid, pencil, (Complex::new(0.0, place), &BESIDE), tally)?;
             let before = modes.len();
             for one in found.into_iter().filter(|one| one.kind.swings()) {
                 let known = |own: &Mode| (own.s - one.s).norm() <= SAME * one.s.norm();
@@ -57,18 +58,18 @@ impl PartialSearch {
             without = if modes.len() > before { 0 } else { without + 1 };
             place *= STEP;
         }
-        Ok(modes)
+        Ok((modes, radius))
     }
 }
 
-/// Modes nearest to a place, for the first of the counts that converges.
+/// Modes nearest to a place, for the first of the counts that converges, and the distance from zero within which these are all.
 fn near(
     about: &Linearised,
     fluid: FluidBehavior,
     pencil: &Pencil,
     (shift, counts): (Complex<f64>, &[usize]),
     tally: &mut Tally,
-) -> Result<Vec<Mode>> {
+) -> Result<(Vec<Mode>, f64)> {
     for &count in counts {
         match spectral::nearest(pencil, shift, count, &EigenvalueOptions::default()) {
             Ok(found) => {
@@ -79,11 +80,11 @@ fn near(
                 }
                 let mut shapes = Shapes::new(about);
                 let modes = found.pairs.iter().filter_map(|pair| mode(about, &mut shapes, pair));
-                return Ok(modes.collect());
+                return Ok((modes.collect(), reach(&found.pairs, shift, Complex::default())));
             }
             Err(SpectralError::Interrupted) => return Err(failed(about, &SpectralError::Interrupted)),
             Err(_) => {}
         }
     }
-    Ok(vec![])
+    Ok((vec![], 0.0))
 }

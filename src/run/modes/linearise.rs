@@ -8,6 +8,7 @@ use crate::functions::signals::SmoothTime;
 use crate::integrate::{StartOptions, consistent_start};
 use crate::model::Model;
 use crate::run::equilibrium::{self, EquilibriumOptions};
+use crate::run::state_range::StateRange;
 use crate::spectral::Pencil;
 
 /// Behavior of the fluid in the linearized equations.
@@ -43,6 +44,8 @@ pub struct Linearised {
     pub b: Vec<f64>,
     /// Largest rate of change of the state, each unknown over its characteristic size [1/s]; 0 at an equilibrium.
     pub rate: f64,
+    /// Warnings that the state is outside the range of the model.
+    pub range: Vec<String>,
 }
 
 /// Linearizes the full case, with constant signals of the instant `at` [s]. The state is `state` (scaled unknowns of
@@ -58,7 +61,7 @@ pub fn linearise(case: &Case, at: f64, state: Option<&[f64]>) -> Result<Linearis
     let mut dae = held(case, at)?;
     let (system, now) = dae.instant(at);
     let y = state.map_or_else(|| start::state(system, case, now), <[f64]>::to_vec);
-    about(dae, at, y)
+    about(case, dae, y, at, false)
 }
 
 /// Linearizes the full case about the equilibrium under the loads at an instant [s].
@@ -77,7 +80,7 @@ fn about_equilibrium(case: &Case, options: &EquilibriumOptions) -> Result<Linear
         fault.at = StopPoint::Time(at);
         Error::Solver(Box::new(fault))
     })?;
-    about(dae, at, y)
+    about(case, dae, y, at, true)
 }
 
 /// Equations of the full case, with constant signals of an instant [s].
@@ -89,7 +92,7 @@ fn held(case: &Case, at: f64) -> Result<BeamDae> {
     Ok(dae)
 }
 
-fn about(mut dae: BeamDae, at: f64, mut y: Vec<f64>) -> Result<Linearised> {
+fn about(case: &Case, mut dae: BeamDae, mut y: Vec<f64>, at: f64, settled: bool) -> Result<Linearised> {
     let l = dae.system().layout.clone();
     for velocity in l.velocities() {
         y[velocity] = 0.0;
@@ -109,6 +112,8 @@ fn about(mut dae: BeamDae, at: f64, mut y: Vec<f64>) -> Result<Linearised> {
         .map_err(|f| fault(f.to_string(), f.worst.clone().map(|w| w.1)))?;
     let rate = yp.iter().fold(0.0_f64, |m, x| m.max(x.abs()));
     yp.fill(0.0);
+    let mut range = StateRange::new(case, dae.system(), settled);
+    range.add(&mut dae, at, &y);
     let (ones, zeros) = (vec![1.0; l.len], vec![0.0; l.len]);
     let entries = dae.pattern().entries();
     let mut parts = [vec![0.0; entries], vec![0.0; entries]];
@@ -118,7 +123,15 @@ fn about(mut dae: BeamDae, at: f64, mut y: Vec<f64>) -> Result<Linearised> {
             .map_err(|(EvaluationError::Recoverable(what) | EvaluationError::Fatal(what))| fault(what, None))?;
     }
     let [a, b] = parts;
-    Ok(Linearised { dae, at, y, a, b, rate })
+    Ok(Linearised {
+        dae,
+        at,
+        y,
+        a,
+        b,
+        rate,
+        range: range.warnings(),
+    })
 }
 
 impl Linearised {

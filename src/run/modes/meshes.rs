@@ -5,6 +5,7 @@
 
 use nalgebra::Complex;
 
+use super::limits::paired;
 use super::shape::{alike, likeness};
 use super::{
     FluidBehavior, LimitingMode, Linearised, Mode, ModeOptions, Modes, Tally, at_equilibrium, linearise, search,
@@ -152,7 +153,7 @@ const SHARP: i32 = 16;
 /// the beam only a little, and all in a similar shape.
 fn swinging(modes: &[Mode], others: &[Mode]) -> Vec<(usize, usize, f64)> {
     let swings = |mode: &Mode| mode.kind.swings();
-    let pairs = super::paired(modes, others, swings, |a, b| {
+    let pairs = paired(modes, others, swings, |a, b| {
         likeness(&a.shape, &b.shape) * as_fast(a, b).powi(SHARP)
     });
     let with_likeness = |(k, j, _): (usize, usize, f64)| (k, j, likeness(&modes[k].shape, &others[j].shape));
@@ -163,7 +164,7 @@ fn swinging(modes: &[Mode], others: &[Mode]) -> Vec<(usize, usize, f64)> {
 /// flow within bladders neither is distinctive, so the remaining modes are paired in the order in which they were found.
 fn real(modes: &[Mode], others: &[Mode], length: f64) -> Vec<(usize, usize, f64)> {
     let real = |mode: &Mode| !mode.kind.swings() && !mode.kind.stays();
-    let mut pairs = super::paired(modes, others, real, |a, b| {
+    let mut pairs = paired(modes, others, real, |a, b| {
         alike(&a.shape, &b.shape, length) * as_fast(a, b)
     });
     let left = |all: &[Mode], taken: &dyn Fn(usize) -> bool| -> Vec<usize> {

@@ -3,6 +3,7 @@
 //! ```text
 //! linearise    pencil of a case about a state, with the fluid as it is, sealed, or free
 //! shape        displacements and pressures of an eigenvector; likeness of two shapes
+//! limits       the same modes with sealed or free fluid
 //! meshes       the same modes on other meshes
 //! clustered    modes beside a cluster of decays
 //! relaxation   modes of a solid that relaxes
@@ -14,6 +15,7 @@
 
 mod clustered;
 pub mod kind;
+mod limits;
 pub mod linearise;
 pub mod meshes;
 mod relaxation;
@@ -167,6 +169,8 @@ pub struct Modes {
     pub solves: u64,
     /// True if all eigenvalues were computed at once.
     pub dense: bool,
+    /// Distance from 2πi near within which every mode is listed [1/s]; infinite if there are no other modes.
+    pub radius: f64,
     /// Number of long-term modes that were not found again in the solid that relaxes.
     pub lost: usize,
     /// True if decays form a cluster at which the search from zero ended.
@@ -189,43 +193,23 @@ pub fn modes(case: &Case, plan: &ModeOptions) -> Result<Modes> {
 /// [`Error::Solver`] if eigenvalues do not converge.
 pub fn compute(about: Linearised, plan: &ModeOptions) -> Result<Modes> {
     let mut tally = Tally::default();
-    let mut modes = search(&about, FluidBehavior::Flowing, plan, &mut tally)?;
-    let (lost, clustered) = (tally.lost, tally.clustered);
-    if plan.limits && about.flows() {
-        let wider = ModeOptions {
-            count: plan.count + 4,
-            ..*plan
-        };
-        for fluid in [FluidBehavior::Sealed, FluidBehavior::Free] {
-            // the larger number may not converge; a limit that is not found is not shown
-            let Ok(others) =
-                search(&about, fluid, &wider, &mut tally).or_else(|_| search(&about, fluid, plan, &mut tally))
-            else {
-                continue;
-            };
-            for (k, j, likeness) in matched(&modes, &others) {
-                let Some(frequency_hz) = others[j].frequency_hz() else {
-                    continue;
-                };
-                let limit = LimitingMode { frequency_hz, likeness };
-                match fluid {
-                    FluidBehavior::Sealed => modes[k].undrained = Some(limit),
-                    _ => modes[k].drained = Some(limit),
-                }
-            }
-        }
-    }
-    Ok(Modes {
+    let modes = search(&about, FluidBehavior::Flowing, plan, &mut tally)?;
+    let mut found = Modes {
         about,
         modes,
         finite: tally.finite,
         factorizations: tally.factorizations,
         solves: tally.solves,
         dense: tally.dense,
-        lost,
-        clustered,
+        radius: tally.radius,
+        lost: tally.lost,
+        clustered: tally.clustered,
         bladders_compared: false,
-    })
+    };
+    if plan.limits {
+        limits::find(&mut found, plan);
+    }
+    Ok(found)
 }
 
 #[derive(Default)]
@@ -234,6 +218,7 @@ struct Tally {
     factorizations: u64,
     solves: u64,
     dense: bool,
+    radius: f64,
     lost: usize,
     clustered: bool,
 }
@@ -278,7 +263,7 @@ fn near_to(
     let mut asked = plan.count + 2;
     loop {
         // conjugates are found too and count once
-        let (mut modes, complete) = match spectral::nearest(&pencil, shift, 2 * asked, &options) {
+        let (mut modes, complete, mut radius) = match spectral::nearest(&pencil, shift, 2 * asked, &options) {
             Ok(found) => {
                 tally.factorizations += found.factorizations;
                 tally.solves += found.solves;
@@ -287,7 +272,13 @@ fn near_to(
                 }
                 let mut shapes = Shapes::new(about);
                 let modes: Vec<Mode> = found.pairs.iter().filter_map(|p| mode(about, &mut shapes, p)).collect();
-                (modes, found.pairs.len() < 2 * asked)
+                let complete = found.pairs.len() < 2 * asked;
+                let radius = if complete {
+                    f64::INFINITY
+                } else {
+                    reach(&found.pairs, shift, target)
+                };
+                (modes, complete, radius)
             }
             Err(SpectralError::Slow { converged, .. }) if plan.near_hz == 0.0 && converged > 1 => {
                 tally.clustered |= fluid == FluidBehavior::Flowing;
@@ -297,7 +288,8 @@ fn near_to(
                     converged,
                     wanted,
                 };
-                (search.modes(about, fluid, &pencil, tally)?, true)
+                let (modes, radius) = search.modes(about, fluid, &pencil, tally)?;
+                (modes, true, radius)
             }
             Err(failure) => return Err(failed(about, &failure)),
         };
@@ -311,10 +303,22 @@ fn near_to(
                 left -= usize::from(kept && !mode.kind.stays());
                 kept
             });
+            if moving > plan.count {
+                radius = modes.iter().map(far).fold(0.0, f64::max).min(radius);
+            }
+            if fluid == FluidBehavior::Flowing {
+                tally.radius = radius;
+            }
             return Ok(modes);
         }
         asked = 2 * asked + plan.count - moving;
     }
+}
+
+/// Distance from the target within which the pairs nearest a shift are all that there are.
+fn reach(pairs: &[EigenPair], shift: Complex<f64>, target: Complex<f64>) -> f64 {
+    let farthest = pairs.iter().map(|pair| (pair.s - shift).norm()).fold(0.0, f64::max);
+    farthest - (shift - target).norm()
 }
 
 /// Mode of a pair; None for the second of two conjugates.
@@ -333,44 +337,6 @@ fn mode(about: &Linearised, shapes: &mut Shapes, pair: &EigenPair) -> Option<Mod
         coarse: None,
         by_mesh: ByMesh::default(),
     })
-}
-
-/// Pairs oscillations with those of other equations: indices in both lists, and the likeness of the shapes.
-fn matched(modes: &[Mode], others: &[Mode]) -> Vec<(usize, usize, f64)> {
-    paired(
-        modes,
-        others,
-        |mode| mode.kind.swings(),
-        |a, b| likeness(&a.shape, &b.shape),
-    )
-}
-
-/// Likeness above which two modes may be the same.
-const ALIKE: f64 = 0.5;
-
-/// Pairs modes of a sort, the most alike first, each at most once.
-fn paired(
-    modes: &[Mode],
-    others: &[Mode],
-    of_sort: impl Fn(&Mode) -> bool,
-    alike: impl Fn(&Mode, &Mode) -> f64,
-) -> Vec<(usize, usize, f64)> {
-    let mut all = vec![];
-    for (k, mode) in modes.iter().enumerate().filter(|m| of_sort(m.1)) {
-        for (j, other) in others.iter().enumerate().filter(|m| of_sort(m.1)) {
-            all.push((k, j, alike(mode, other)));
-        }
-    }
-    all.sort_by(|a, b| b.2.total_cmp(&a.2));
-    let (mut taken, mut given) = (vec![false; modes.len()], vec![false; others.len()]);
-    all.retain(|&(k, j, alike)| {
-        let new = !taken[k] && !given[j] && alike > ALIKE;
-        if new {
-            (taken[k], given[j]) = (true, true);
-        }
-        new
-    });
-    all
 }
 
 fn failed(about: &Linearised, failure: &SpectralError) -> Error {

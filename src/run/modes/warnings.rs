@@ -23,6 +23,7 @@ impl Modes {
         let by_mesh = meshes::warning(self).into_iter().chain(self.forgotten());
         moving
             .into_iter()
+            .chain(state.range.iter().cloned())
             .chain(by_mesh)
             .chain(self.missing())
             .chain(self.beside())

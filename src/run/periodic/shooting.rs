@@ -3,11 +3,13 @@
 use serde::{Deserialize, Serialize};
 
 use super::scene::PeriodicScene;
+use crate::case::schema::Case;
 use crate::dae::BeamDae;
 use crate::integrate::{StartOptions, consistent_start};
 use crate::numerics::krylov;
 use crate::onestep::StepMap;
 use crate::onestep::step_map::{StepError, StepMapWork};
+use crate::run::state_range::StateRange;
 use crate::run::stop::INTERRUPTED;
 
 /// Newton correction, over the tolerance, at which a cycle counts as found.
@@ -35,6 +37,17 @@ pub struct Cycle {
     pub march: StepMap<BeamDae>,
     /// Record of the search.
     pub search: ShootingRecord,
+}
+
+impl Cycle {
+    /// Warnings of states of the cycle outside the range of the model.
+    pub fn range(&mut self, case: &Case, scene: &PeriodicScene) -> Vec<String> {
+        let mut range = StateRange::new(case, &scene.system, true);
+        let (mut y, mut yp) = (self.y.clone(), self.yp.clone());
+        // steps of a cycle that was found do not fail
+        let _ = self.march.go(&mut y, &mut yp, &mut |dae, t, y| range.add(dae, t, y));
+        range.warnings()
+    }
 }
 
 /// Record of the search for a cycle.
@@ -147,7 +160,7 @@ fn depart(
 ) -> Result<Vec<f64>, StepError> {
     let (mut end, mut yp) = (y.to_vec(), vec![0.0; y.len()]);
     search.periods += 1;
-    march.go(&mut end, &mut yp)?;
+    march.go(&mut end, &mut yp, &mut |_, _, _| {})?;
     let mut back: Vec<f64> = end.iter().zip(y).map(|(end, y)| end - y).collect();
     scene.admit(&mut back);
     Ok(back)

@@ -8,13 +8,12 @@ use crate::case::Case;
 use crate::case::parameter::Parameter;
 use crate::discrete::System;
 use crate::error::{Code, Result};
-use crate::run::{early_warnings, modes};
+use crate::run::early_warnings;
+use crate::run::modes::{self, sort};
 use crate::study::refine::{self, numbers};
 
 /// Number of modes with figures, those of lowest frequency.
 pub const MODES: usize = 6;
-/// Largest number of modes computed if few of the slowest oscillate.
-const MOST_MODES: usize = 384;
 /// Damping ratio above which a mode decays to less than a thirtieth within a period: it hardly oscillates.
 const STRONG: f64 = 0.5;
 
@@ -71,24 +70,22 @@ impl Analysis for ModesAnalysis {
     }
 }
 
-/// Computes enough modes about the initial state of a case that six of them oscillate, if there are as many. Returns
-/// the modes and the plan that was used.
+/// Computes enough modes about the initial state of a case to know the six lowest oscillations, if there are as many. Returns
+/// the modes and a plan that finds them.
 ///
 /// # Errors
 /// Those of [`modes::modes`].
 pub fn swinging(case: &Case) -> Result<(modes::Modes, modes::ModeOptions)> {
-    let mut plan = modes::ModeOptions {
-        count: 2 * MODES,
+    let plan = modes::ModeOptions {
+        count: MODES,
         near_hz: 0.0,
         limits: false,
     };
-    loop {
-        let found = modes::modes(case, &plan)?;
-        if lowest(&found.modes).len() == MODES || found.modes.len() < plan.count || plan.count >= MOST_MODES {
-            return Ok((found, plan));
-        }
-        plan.count *= 2;
-    }
+    sort::of_sort(
+        modes::linearise(case, 0.0, None)?,
+        &plan,
+        Some(modes::ModeFilter::Oscillation),
+    )
 }
 
 /// Indices of the oscillating modes, the lowest first; at most [`MODES`].

@@ -61,6 +61,7 @@ fn multipliers(case: &Case, ask: AnalysisRequest) -> Result<AnalysisOutcome> {
     let all = floquet::multipliers(&scene, &mut cycle, COUNT);
     let mut found = of_multipliers(&all);
     found.steps = Some(cycle.search.work.steps);
+    found.warn(&cycle.range(case, &scene));
     if ask.meshes {
         let here = numbers::of_stability(&all);
         let mut of = |case: &Case| numbers::of_growth(case, None, COUNT, &stop);

@@ -1,5 +1,6 @@
 //! Positions of quantities: `tip`, `bladder 3`, `port inlet`, the name of a probe, or a share of the beam's length.
 
+use crate::case::bladder_numbers;
 use crate::case::schema::{Case, Probe};
 use crate::case::spans;
 use crate::case::wiring::bladder_index;
@@ -65,11 +66,14 @@ fn of_bladder(case: &Case, quantity: &str, label: &str) -> std::result::Result<Q
     let count = bladders.per_row;
     let number = label.replace('−', "-").parse::<i64>().ok();
     let there = |n: &i64| bladder_index(*n, count).is_some_and(|bladder| spans::has_bladder(case, bladder));
-    let number = number.filter(there);
-    let Some(number) = number else {
-        return Err(format!(
-            "no such bladder. The upper row has bladders 1 to {count}, the lower row -1 to -{count}"
-        ));
+    let Some(number) = number.filter(there) else {
+        return Err(match number {
+            Some(number) => bladder_numbers::missing(case, number),
+            None => format!(
+                "no such bladder. The case has bladders {}",
+                bladder_numbers::existing(case)
+            ),
+        });
     };
     let end = match quantity {
         "pressure" | "pressure_pa" => ["pressure_lower", "pressure_upper"][usize::from(number > 0)],

@@ -2,6 +2,7 @@
 
 use std::path::Path;
 
+use crate::case::bladder_numbers;
 use crate::case::schema::Case;
 use crate::case::spans;
 use crate::case::wiring::{bladder_index, bladder_label};
@@ -73,12 +74,9 @@ impl PressureTable {
                 Holds::Deviation(label) => (label, &mut deviations),
             };
             let there = |bladder: &usize| spans::has_bladder(case, *bladder);
-            let bladder = bladder_index(label, per_row).filter(there).ok_or_else(|| {
-                wrong(format!(
-                    "column {heading}: there is no bladder {label}. The upper row has bladders 1 to {per_row}, the \
-                     lower row -1 to -{per_row}"
-                ))
-            })?;
+            let bladder = bladder_index(label, per_row)
+                .filter(there)
+                .ok_or_else(|| wrong(format!("column {heading}: {}", bladder_numbers::missing(case, label))))?;
             if list.iter().any(|(_, other)| *other == bladder) {
                 return Err(wrong(format!("column {heading}: a second column of bladder {label}")));
             }
