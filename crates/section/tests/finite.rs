@@ -305,3 +305,27 @@ fn a_thin_wall_between_the_rows_bulges_as_a_plate() {
     println!("{off:?}");
     assert!(off[1] > 0.0 && off[1] < 0.2 && off[1] < 0.6 * off[0], "{off:?}");
 }
+
+/// Goal: no iteration stops early at small pressures, that of the side walls' lateral stretch included. Areas per pressure at p and 2 p, extrapolated to zero, are those of the
+/// tangent at rest. Tolerance: rounding errors of the areas, 1e-20 m^2.
+#[test]
+fn small_pressures_have_the_areas_of_the_tangent() {
+    let per_area = 0.046 / 0.01;
+    for law in LAWS {
+        let (cell, _) = cells(&paper(0.48, 0.0), law, 1);
+        let at = |drive, p: f64| cell.equilibrium(drive, [p, 0.0]).unwrap();
+        let rest = at(Drive::Strain([0.0; 2]), 0.0);
+        for (drive, exact) in [
+            (Drive::Strain([0.0; 2]), -rest.tangent[2][2]),
+            (Drive::Load([0.0; 2]), compliance(&rest.tangent)[2][2]),
+        ] {
+            for p in [0.05, 0.1, 0.5] {
+                let [one, two] = [p, 2.0 * p].map(|p| per_area * at(drive, p).areas_m2[0] / p);
+                assert!(
+                    ((2.0 * one - two) / exact - 1.0).abs() < 1e-8,
+                    "{law:?} {p} {one} {exact}"
+                );
+            }
+        }
+    }
+}

@@ -84,7 +84,10 @@ impl Law {
             let stiffness = w.h[3][3] + 2.0 * w.h[3][4] + w.h[4][4];
             let cross = w.h[0][3] + w.h[0][4];
             if force.abs() <= 1e-13 * stiffness {
-                return Some([w.v, w.g[0], w.h[0][0] - cross * cross / stiffness]);
+                // the last correction of b to first order: at small stretches it is as large as the nonlinear part of the stress
+                let rest = force / stiffness;
+                let stress = w.g[0] - cross * rest;
+                return Some([w.v - 0.5 * force * rest, stress, w.h[0][0] - cross * cross / stiffness]);
             }
             b -= force / stiffness;
             if b <= 0.0 {
