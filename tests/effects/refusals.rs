@@ -58,6 +58,27 @@ fn the_published_form_turns_and_what_turns_bears_its_normal_force() {
     assert!(effects(&[small]).refusals.is_empty());
 }
 
+/// Goal: material damping of one of two motions needs inertia, which stays unless it is switched off by name; damping of both does not.
+#[test]
+fn half_a_damping_needs_inertia() {
+    let off = r#"/effects={"solid_inertia":"off"}"#;
+    let at = "/effects/solid_inertia";
+    let damped = |times: &str| format!("/beam/damping={{{times}}}");
+    let [bending, axial] = ["\"bending_time_s\":0.01", "\"axial_time_s\":0.01"];
+    refused(&[off, &damped(bending)], at, "damps bending only");
+    refused(&[off, &damped(axial)], at, "damps stretching only");
+    for whole in [
+        format!("{bending},{axial}"),
+        format!("{bending},\"drag_n_s_m2\":0.01"),
+        String::new(),
+    ] {
+        assert!(effects(&[off, &damped(&whole)]).refusals.is_empty(), "{whole}");
+    }
+    let bar = r#"/effects={"solid_inertia":"off","finite_rotation":"off","axial_stretch":"off"}"#;
+    assert!(effects(&[bar, &damped(bending)]).refusals.is_empty());
+    assert!(effects(&["/effects=\"auto\"", &damped(bending)]).has(Effect::SolidInertia));
+}
+
 #[test]
 fn a_beam_without_axial_inertia_is_carried_by_an_end() {
     let free = r#"/ends={"root":"free","tip":"free"}"#;

@@ -219,7 +219,7 @@ impl<'a> Chooser<'a> {
             Effect::FiniteRotation => obstacles::finite_rotation(case),
             Effect::AxialForceOnBending => obstacles::axial_force_on_bending(case, turning),
             Effect::AxialStretch => obstacles::axial_stretch(case, across, turning),
-            Effect::SolidInertia => obstacles::solid_inertia(case),
+            Effect::SolidInertia => obstacles::solid_inertia(case, [across, self.set.has(Effect::AxialStretch)]),
             Effect::AxialInertia => obstacles::axial_inertia(case, turning),
             Effect::RotaryInertia => obstacles::rotary_inertia(case, self.set.has(Effect::Shear)),
             Effect::Flow => network.and_then(obstacles::flow),

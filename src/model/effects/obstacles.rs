@@ -121,8 +121,20 @@ pub fn axial_force_on_bending(case: &Case, finite_rotation: bool) -> Option<Obst
     )
 }
 
-/// Obstacle: a dashpot or a lossy contact, which acts only on moving masses.
-pub fn solid_inertia(case: &Case) -> Option<Obstacle> {
+/// Obstacle: a dashpot or a lossy contact, which acts only on moving masses; or damping of the material that leaves one of the motions
+/// across and along undamped, so that a part of the equations has rates and the other none.
+pub fn solid_inertia(case: &Case, moves: [bool; 2]) -> Option<Obstacle> {
+    let damping = &case.beam.damping;
+    let times = [damping.bending_time_s, damping.axial_time_s].map(|time| time > 0.0);
+    let all = case.surroundings.is_some() || damping.drag_n_s_m2 > 0.0 || damping.quadratic_drag_n_s2_m3 > 0.0;
+    let undamped = (0..2).find(|axis| moves[*axis] && !times[*axis]);
+    if let Some(axis) = undamped.filter(|_| !all && times.contains(&true)) {
+        let [damped, other] = [["stretching", "bending_time_s"], ["bending", "axial_time_s"]][axis];
+        return obstacle(
+            format!("/beam/damping damps {damped} only, and without inertia the other motion has no rates"),
+            &format!("give {other} too, remove the damping, or leave solid_inertia on"),
+        );
+    }
     if let Some(wall) = lossy(case) {
         return obstacle(
             format!(
