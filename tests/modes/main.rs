@@ -5,5 +5,6 @@ mod common;
 mod fourth;
 mod physics;
 mod response;
+mod selection;
 mod sizes;
 mod spectral;

@@ -52,6 +52,8 @@ fn one_row_is_mapped_by_itself() {
     let case = shipped(
         "valves-open",
         &[
+            "/bladders/coupling=\"reciprocal\"",
+            "/formulation=\"conservative\"",
             "/bladders/lower=\"none\"",
             "/network={\"chains\":[{\"bladders\":[1,2,3,4,5,6,7,8,9,10],\"ends\":[{\"pressure_pa\":1},\"sealed\"]}]}",
         ],

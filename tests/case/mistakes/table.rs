@@ -15,7 +15,7 @@ pub const PUMP: &str = "/network/chains/0/ends/0/pressure_pa";
 
 /// What is replaced by what; the pointer of the fault, the text that is marked (of a place between two letters what stands before it, behind `|`),
 /// and what is said to do.
-pub const OF_TEXT: [(&str, &str, &str, &str, &str); 53] = [
+pub const OF_TEXT: [(&str, &str, &str, &str, &str); 54] = [
     // numbers with units
     ("60000", "60kPa", PUMP, "60kPa", "60kPa is 60000 here"),
     ("60000", "60 kPa", PUMP, "60 kPa", "60 kPa is 60000 here"),
@@ -167,6 +167,13 @@ pub const OF_TEXT: [(&str, &str, &str, &str, &str); 53] = [
         "/beam/viscosity_pa_s",
         "\"viscosity_pa_s\"",
         "it belongs to /fluid: /fluid/viscosity_pa_s",
+    ),
+    (
+        "\"network\": {",
+        "\"network\": {\"tubes\": [{\"from\": {\"bladder\": 4, \"end\": \"outlet\"}, \"to\": {\"bladder\": 5, \"end\": \"inlet\"}, \"radius_m\": 1e-3}], ",
+        "/network/tubes/0/radius_m",
+        "\"radius_m\"",
+        "it belongs to /network/tubes/0/cross_section/circle",
     ),
     (
         "\"time\"",
