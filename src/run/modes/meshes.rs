@@ -200,7 +200,10 @@ pub fn warning(found: &Modes) -> Option<String> {
     let mut listed: Vec<String> = large
         .into_iter()
         .take(LISTED)
-        .map(|(k, error, what)| format!("{what} of mode {k} about {:.0} %", 100.0 * error))
+        .map(|(k, error, what)| match error >= 1.0 {
+            true => format!("{what} of mode {k} larger than itself"),
+            false => format!("{what} of mode {k} about {:.0} %", 100.0 * error),
+        })
         .collect();
     if more > 0 {
         listed.push(format!("{more} more"));

@@ -20,6 +20,9 @@ use crate::error::numbers::error_percent as percent;
 use crate::error::{Code, Error, Result};
 use crate::study::effects::full_model::full;
 
+/// Relative error from which a figure is not resolved: a percentage of it has no meaning.
+const UNRESOLVED: f64 = 1.0;
+
 /// Errors of one number due to meshes and effects, relative to it.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct ErrorShare {
@@ -150,8 +153,11 @@ impl Meshes {
     pub fn describe(&self) -> Option<String> {
         let (name, share) = self.worst()?;
         Some(format!(
-            "largest estimated error: about {} of {name}{}",
-            percent(share.total()),
+            "largest estimated error: {} of {name}{}",
+            match share.total() >= UNRESOLVED {
+                true => "more than the value".to_owned(),
+                false => format!("about {}", percent(share.total())),
+            },
             share.parts()
         ))
     }
@@ -167,11 +173,17 @@ impl Meshes {
                 2 => "; another figure has more than 5 %".into(),
                 _ => format!("; {} other figures have more than 5 %", many - 1),
             };
-            format!(
-                "{name} has a relative error of about {}{}{others}",
-                percent(share.total()),
-                share.parts()
-            )
+            match share.total() >= UNRESOLVED {
+                true => format!(
+                    "{name} is not resolved: its estimated error is larger than itself{}{others}",
+                    share.parts()
+                ),
+                false => format!(
+                    "{name} has a relative error of about {}{}{others}",
+                    percent(share.total()),
+                    share.parts()
+                ),
+            }
         });
         let unknown = self
             .unknown
@@ -217,5 +229,32 @@ impl ErrorShare {
                 format!(" ({})", each.collect::<Vec<_>>().join(", "))
             }
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Goal: an error above the figure itself is stated as such, without a percentage of it.
+    #[test]
+    fn a_figure_within_its_error_is_not_resolved() {
+        let said = |beam: f64| {
+            let share = ErrorShare {
+                beam: Some(beam),
+                ..ErrorShare::default()
+            };
+            let found = Meshes {
+                quantities: [("tip_u1".to_owned(), share)].into(),
+                ..Meshes::default()
+            };
+            [found.warning(), found.describe()].map(Option::unwrap_or_default)
+        };
+        for said in said(20.0) {
+            assert!(!said.contains('%') && said.contains("than"), "{said}");
+        }
+        let [warning, described] = said(0.2);
+        assert!(warning.contains("relative error of about 20 %"), "{warning}");
+        assert!(described.contains("about 20 % of tip_u1"), "{described}");
     }
 }
