@@ -46,10 +46,12 @@ fn modes_are_numbered_by_frequency() {
 fn the_lowest_oscillations_are_listed_for_every_count() {
     let dir = TempDir::new().unwrap();
     let found = |case: &str, cells: &str, count: &str| {
-        let (out, set) = (dir.path().join(count), format!("/mesh/cells_per_segment={cells}"));
+        let (out, set) = (dir.path().join(count), format!("/mesh/cells_per_bladder={cells}"));
         let options = [
             "--set",
             &set,
+            "--set",
+            "/mesh/cells_per_segment=1",
             "--count",
             count,
             "--quiet",
@@ -72,7 +74,7 @@ fn the_lowest_oscillations_are_listed_for_every_count() {
             said,
         )
     };
-    for (case, cells) in [("cases/air-actuator.json", "1"), ("cases/tapered-finger.json", "1")] {
+    for (case, cells) in [("cases/fibre-bender.json", "1"), ("cases/tapered-finger.json", "2")] {
         let (all, said) = found(case, cells, "300");
         assert!(said.contains("oscillations in all") && all.len() > 8, "{said}");
         for count in [1, 3, 8] {
@@ -90,7 +92,7 @@ fn the_lowest_oscillations_are_listed_for_every_count() {
 fn oscillations_beside_a_cluster_are_found() {
     let dir = TempDir::new().unwrap();
     let found = |cells: &str| {
-        let (out, set) = (dir.path().join(cells), format!("/mesh/cells_per_segment={cells}"));
+        let (out, set) = (dir.path().join(cells), format!("/mesh/cells_per_bladder={cells}"));
         let case = ["cases/tour-beam.json", "--set", &set, "--json", "--quiet"];
         let (code, said, error) =
             modes(&[&case[..], &["--kind", "oscillation", "--out", out.to_str().unwrap()]].concat());
