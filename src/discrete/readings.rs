@@ -151,7 +151,7 @@ fn bending(system: &System, now: &TimeData, w: &Workspace<f64>, readings: &mut F
 }
 
 /// Vector between the ends of a cell, per length, against which section forces have their moment.
-fn line(system: &System, w: &Workspace<f64>, cell: usize) -> Planar<f64> {
+pub(super) fn line(system: &System, w: &Workspace<f64>, cell: usize) -> Planar<f64> {
     match system.model.kinematics {
         Kinematics::FiniteRotation => w.shape.d3[cell],
         Kinematics::SmallRotation => Planar::new(w.shape.d3[cell].x, 1.0),

@@ -201,3 +201,89 @@ fn values_beside_jumps_are_those_of_their_places() {
         }
     }
 }
+
+/// Goal: probes beside a jump have curvature, surface strain, angle and deflection of their side, also within a cell of it; at the jump
+/// those behind it, whatever rounding of decimal fractions makes of its place. Tolerance: the deflection changes the lever arm by 1e-6;
+/// angles have the second-order error of the cells.
+#[test]
+fn probes_beside_a_jump_are_on_their_side() {
+    let spans =
+        json!([{"length_m": 0.3, "segments": 3}, {"segments": 5, "beam": {"young_modulus_pa": 3e8, "height_m": 0.02}}]);
+    let places = [0.03, 0.28, 0.3, 0.31, 0.9];
+    for (order, cells) in [(2, 2), (2, 7), (4, 2), (4, 7)] {
+        let mut case = dry(8, &spans);
+        case["mesh"]["order"] = json!(order);
+        case["mesh"]["cells_per_segment"] = json!(cells);
+        let probe = |(k, at)| json!({"name": format!("p{k}"), "at": at});
+        case["probes"] = places.iter().enumerate().map(probe).collect();
+        let case = parse(&case);
+        let path = follow(&case, &EquilibriumOptions::at(1.0), &mut |_| Control::Continue).unwrap();
+        let names = columns(&system(&case, 1.0).unwrap());
+        let value = |name: String| path.last().row[names.iter().position(|c| c.name == name).unwrap()];
+        for (k, at) in places.into_iter().enumerate() {
+            let (ei, half) = if at < 0.3 { (1.0, 0.005) } else { (2.0, 0.01) };
+            // slope and deflection by the load F at the tip: integrals of F (1 - s)/EI
+            let slope = |s: f64| s - 0.5 * s * s;
+            let below = |s: f64| 0.5 * s * s - s * s * s / 6.0;
+            let border = f64::min(at, 0.3);
+            let beyond = at - border;
+            let angle = 1e-3 * (slope(border) + (slope(at) - slope(border)) / 2.0);
+            let deflection = 1e-3
+                * (below(border) + slope(border) * beyond + (below(at) - below(border) - slope(border) * beyond) / 2.0);
+            let curvature = -1e-3 * (1.0 - at) / ei;
+            for (what, exact, tolerance) in [
+                ("curvature", curvature, 1e-5),
+                ("strain_upper", curvature * half, 1e-5),
+                (
+                    "angle",
+                    angle,
+                    if order == 4 {
+                        1e-5
+                    } else {
+                        0.04 / f64::from(cells * cells)
+                    },
+                ),
+                (
+                    "u1",
+                    deflection,
+                    if order == 4 {
+                        1e-5
+                    } else {
+                        0.3 / f64::from(cells * cells)
+                    },
+                ),
+            ] {
+                let found = value(format!("p{k}_{what}"));
+                println!("{order} {cells} {at} {what}: {:.1e}", found / exact - 1.0);
+                assert!(
+                    (found / exact - 1.0).abs() < tolerance,
+                    "{order} {cells} {at} {what}: {found:.6e} {exact:.6e}"
+                );
+            }
+        }
+    }
+}
+
+/// Goal: a height that waves once per segment is not resolved by two or four cells: W016 names it, and the bar of the deflection covers
+/// the error, which is 40 %.
+#[test]
+fn waves_that_a_mesh_does_not_see_are_reported() {
+    let wave = json!({"sum": [{"polynomial": {"coefficients": [0.01]}}, {"sine": {"amplitude": 0.004, "waves": 20}}]});
+    let case = |cells: usize| {
+        let mut case = dry(20, &json!([{"beam": {"height_m": wave}}]));
+        case["mesh"]["cells_per_segment"] = json!(cells);
+        parse(&case)
+    };
+    let fine = deflection(&serde_json::to_value(case(16)).unwrap());
+    let coarse = deflection(&serde_json::to_value(case(2)).unwrap());
+    assert!((coarse / fine - 1.0).abs() > 0.3, "{coarse} {fine}");
+    let [wavy, resolved] = [case(2), case(16)].map(|case| {
+        let system = System::new(&case).unwrap();
+        slcbeam::discrete::resolution::warnings_at_rest(&case, &system)
+    });
+    assert!(
+        wavy[0].contains("W016") && wavy[0].contains("/spans/0/beam/height_m"),
+        "{wavy:?}"
+    );
+    assert!(resolved.is_empty(), "{resolved:?}");
+}

@@ -2,16 +2,20 @@
 
 use super::Observable;
 use super::evaluate::StateView;
-use crate::case::schema::{Beam, Case, Probe as Written};
+use crate::case::schema::{Case, Probe as Written};
 use crate::case::spans;
 use crate::discrete::angle_unwrapping::{first_angle, rotation, tip_angle};
+use crate::discrete::readings::line;
 use crate::discrete::residual::bending::segment_curvature;
 use crate::discrete::{BeamMesh, MeshSections, System};
+use crate::model::Kinematics;
+use crate::numerics::Planar;
 
 /// A place of the beam, on a mesh.
 ///
-/// Values of nodes and of cells are interpolated linearly, those of cells extrapolated to the ends of smooth parts: the error is second
-/// order in the cell length. Curvatures beside a jump of the section are those of the probe's side; at a jump, those behind it.
+/// Displacements are interpolated with the curvature of the cell, other values of nodes and of cells linearly, those of cells extrapolated
+/// to the ends of smooth parts: the error is second order in the cell length. Curvatures beside a jump of the section are those of the
+/// probe's side; at a jump, those behind it.
 #[derive(Clone, Debug)]
 pub struct MeshProbe {
     /// First part of its column names.
@@ -33,7 +37,12 @@ pub struct MeshProbe {
     surfaces: [f64; 2],
     /// Young's modulus of the solid [Pa].
     young_modulus: f64,
+    /// EI [N m^2].
+    bending: f64,
 }
+
+/// Relative deviation of a place from a node that counts as rounding of decimal fractions.
+const ROUNDING: f64 = 1e-9;
 
 /// One row of the table: last part of the column name, unit, description, need of bladders, evaluation.
 type Entry = (
@@ -47,8 +56,8 @@ type Entry = (
 /// Quantities recorded at each probe.
 #[rustfmt::skip]
 const TABLE: [Entry; 13] = [
-    ("u1", "m", "transverse displacement", false, |p, look| p.of_nodes(|i| look.w.motion.u[i].x)),
-    ("u3", "m", "axial displacement", false, |p, look| p.of_nodes(|i| look.w.motion.u[i].z)),
+    ("u1", "m", "transverse displacement", false, |p, look| p.displacement(look).x),
+    ("u3", "m", "axial displacement", false, |p, look| p.displacement(look).z),
     ("angle", "rad", "slope angle phi, counted over full turns", false, MeshProbe::angle),
     ("curvature", "1/m", "curvature", false, MeshProbe::curvature),
     ("strain_upper", "1", "strain lambda - 1 + kappa h_s/2 of the upper surface", false, |p, look| p.surface(look, 0)),
@@ -149,29 +158,14 @@ impl MeshProbe {
     /// Probes of a case.
     pub fn all(case: &Case, mesh: &BeamMesh, sections: &MeshSections) -> Vec<Self> {
         let segments = spans::segments(case);
-        let parts = 2 * mesh.cells_per_segment;
-        let within = match case.probes.is_empty() {
-            true => vec![],
-            false => spans::within(case, &segments, parts),
-        };
         let probe = |probe: &Written| {
             let mut one = Self::new(&probe.name, probe.at, mesh, sections);
-            let surfaces = |beam: &Beam| [0.5, -0.5].map(|side| side * beam.height_m - beam.line_height());
-            let (node, share) = one.node;
-            if let Some(beams @ [_, ..]) = within.get(one.segment).map(|beams| &beams[..]) {
-                let place = 2.0 * ((node - one.segment * mesh.cells_per_segment) as f64 + share);
-                let before = (place as usize).min(parts - 1);
-                let pair = [&beams[before], &beams[before + 1]];
-                let share = place - before as f64;
-                let between = |[a, b]: [f64; 2]| a + share * (b - a);
-                let sides = pair.map(surfaces);
-                one.surfaces = [0, 1].map(|side| between([sides[0][side], sides[1][side]]));
-                one.young_modulus = between(pair.map(|beam| beam.young_modulus_pa));
-                return one;
-            }
-            let beam = segments.get(one.segment).map_or(&case.beam, |values| &values.beam);
-            one.surfaces = surfaces(beam);
+            let k = mesh.cells_per_segment;
+            let at = ((one.node.0 - one.segment * k) as f64 + one.node.1) / k as f64;
+            let beam = spans::solid_at(case, &segments, one.segment, at);
+            one.surfaces = [0.5, -0.5].map(|side| side * beam.height_m - beam.line_height());
             one.young_modulus = beam.young_modulus_pa;
+            one.bending = beam.young_modulus_pa * beam.second_moment();
             one
         };
         case.probes.iter().map(probe).collect()
@@ -179,6 +173,11 @@ impl MeshProbe {
 
     fn new(name: &str, at: f64, mesh: &BeamMesh, sections: &MeshSections) -> Self {
         let place = mesh.place(at);
+        // a place at a node is there in spite of rounding
+        let place = match place.round() {
+            node if (place - node).abs() <= ROUNDING * mesh.cells as f64 => node,
+            _ => place,
+        };
         let node = (place as usize).min(mesh.cells - 1);
         let jump = |node: usize, side: usize| {
             let both = sections.bending_beside[node];
@@ -202,6 +201,7 @@ impl MeshProbe {
             jumps: [jump(node, 1), jump(node + 1, 0)],
             surfaces: [0.0; 2],
             young_modulus: 0.0,
+            bending: 0.0,
         }
     }
 
@@ -216,39 +216,82 @@ impl MeshProbe {
 
     /// Angle along the chain of midpoints, `φ_{c+1} = φ_c - h κ_{c+1}`, with the full turns of the tip's angle.
     fn angle(&self, look: &StateView) -> f64 {
-        let (kappa, mesh) = (&look.w.shape.kappa, &look.system.mesh);
+        let mesh = &look.system.mesh;
+        let kappa = |node: usize| match self.jumps[node - self.node.0] {
+            Some(_) => self.node_curvature(look, node),
+            None => look.w.shape.kappa[node],
+        };
         let (node, share) = self.node;
         let turns = look.tip_angle() - tip_angle(look.system, look.now, &look.w);
         // from the midpoint of the first cell to that of the cell
         let passed = rotation(look.system, &look.w, node);
-        let rest = match (node, share) {
-            (0, share) if share < 0.5 => (share - 0.5) * kappa[0],
-            (_, share) if share < 0.5 => (share - 0.5) * kappa[node],
-            _ => (share - 0.5) * kappa[node + 1],
+        let by = share - 0.5;
+        let rest = match () {
+            // from the mean angle of the cell, with a linear curvature
+            () if mesh.fourth => {
+                let [before, behind] = [node, node + 1].map(|i| self.node_curvature(look, i));
+                by * 0.5 * (before + behind) + (0.5 * by * by - 1.0 / 24.0) * (behind - before)
+            }
+            () if share < 0.5 => by * kappa(node),
+            () => by * kappa(node + 1),
         };
         first_angle(look.system, look.now, &look.w) - (passed + mesh.lengths[node] * rest) + turns
     }
 
-    fn curvature(&self, look: &StateView) -> f64 {
-        self.of_nodes(|i| self.node_curvature(look, i))
+    /// Displacement, with the curvature of the cell: `r'' = λ κ e_n`, cubic between the nodes.
+    fn displacement(&self, look: &StateView) -> Planar<f64> {
+        let (system, w) = (look.system, &look.w);
+        let (node, share) = self.node;
+        let [before, behind] = [node, node + 1].map(|i| w.motion.u[i]);
+        let within = share * (1.0 - share);
+        let straight = before * (1.0 - share) + behind * share;
+        if within == 0.0 || system.model.kinematics == Kinematics::Bar {
+            return straight;
+        }
+        let kappa = [node, node + 1].map(|i| self.node_curvature(look, i));
+        let bent = ((2.0 - share) * kappa[0] + (1.0 + share) * kappa[1]) / 3.0;
+        let length = system.mesh.lengths[node];
+        straight - line(system, w, node).normal() * (0.5 * within * length * length * bent)
     }
 
-    /// Curvature of a node beside the probe, on the probe's side of a jump of the section: `M/EI + α_p + κ_0`.
+    /// `M/EI + α_p + κ_0` of the place: M is continuous where EI and α_p jump, and smooth in a taper.
+    fn curvature(&self, look: &StateView) -> f64 {
+        let (system, w) = (look.system, &look.w);
+        if !self.follows_moment(look) {
+            return self.of_nodes(|i| w.curvature()[i]);
+        }
+        let free = segment_curvature(system, w, self.segment) + self.of_nodes(|i| look.now.rest_curvature(i));
+        self.of_nodes(|i| self.own_moment(look, i)) / self.bending + free
+    }
+
+    /// True if the moments of both nodes determine curvature: the law is linear, and neutral axes beside the node have their own moments.
+    fn follows_moment(&self, look: &StateView) -> bool {
+        let (system, w) = (look.system, &look.w);
+        let linear = system.sections.laws.is_empty() && w.forces.nonlinear_moment.is_empty();
+        let (node, _) = self.node;
+        let known = |i: usize, jump: Option<f64>| {
+            jump.is_none() || system.sections.offset.is_empty() || system.sections.offset_border(i).is_some()
+        };
+        linear && !system.model.published() && known(node, self.jumps[0]) && known(node + 1, self.jumps[1])
+    }
+
+    /// `EI (κ - α_p - κ_0)` of a node beside the probe, on its side.
+    fn own_moment(&self, look: &StateView, node: usize) -> f64 {
+        let side = usize::from(node == self.node.0);
+        match look.system.sections.offset_border(node) {
+            Some(border) => look.w.forces.side_moment[2 * border + side],
+            None => look.w.linear_moments()[node],
+        }
+    }
+
+    /// Curvature of a node beside the probe, on the probe's side of a jump of the section.
     fn node_curvature(&self, look: &StateView, node: usize) -> f64 {
         let (system, w) = (look.system, &look.w);
-        let own = self.jumps[node - self.node.0];
-        // a nonlinear law has no such EI
-        let linear = system.sections.laws.is_empty() && w.forces.nonlinear_moment.is_empty();
-        let Some(stiffness) = own.filter(|_| linear) else {
-            return w.curvature()[node];
-        };
-        let right = usize::from(node == self.node.0);
-        match system.sections.offset_border(node) {
-            Some(border) => w.shape.side_curvature[border][right],
-            None if !system.sections.offset.is_empty() => w.curvature()[node],
-            None => {
+        match self.jumps[node - self.node.0].filter(|_| self.follows_moment(look)) {
+            None => w.curvature()[node],
+            Some(stiffness) => {
                 let free = segment_curvature(system, w, self.segment) + look.now.rest_curvature(node);
-                w.linear_moments()[node] / stiffness + free
+                self.own_moment(look, node) / stiffness + free
             }
         }
     }
@@ -256,8 +299,8 @@ impl MeshProbe {
     /// `λ - 1 + κ (±h_s/2 - z_r)`, κ relative to the rest curvature.
     fn surface(&self, look: &StateView, side: usize) -> f64 {
         let shape = &look.w.shape;
-        between(self.strained, |c| shape.strain[c])
-            + self.surfaces[side] * self.of_nodes(|i| self.node_curvature(look, i) - look.now.rest_curvature(i))
+        let rest = self.of_nodes(|i| look.now.rest_curvature(i));
+        between(self.strained, |c| shape.strain[c]) + self.surfaces[side] * (self.curvature(look) - rest)
     }
 
     /// Stress of a fibre at a surface: Young's modulus E times its strain, plus the stress of the Maxwell branches, which, like strain,
@@ -274,8 +317,12 @@ impl MeshProbe {
                 .get(c)
                 .map_or(0.0, |force| force / sections.axial[c])
         };
-        let own = |i: usize| self.jumps[i - self.node.0].unwrap_or(sections.bending[i]);
-        let moment = |i: usize| forces.relaxing_moment.get(i).map_or(0.0, |moment| moment / own(i));
+        let moment = |i: usize| {
+            forces
+                .relaxing_moment
+                .get(i)
+                .map_or(0.0, |moment| moment / self.bending)
+        };
         let relaxing = between(self.strained, normal) + self.surfaces[side] * self.of_nodes(moment);
         self.young_modulus * (self.surface(look, side) + relaxing)
     }

@@ -8,6 +8,7 @@ mod initial_values;
 mod load_distribution;
 mod ports;
 mod statics;
+mod tapers;
 mod vibrations;
 
 use crate::case::schema::Case;
@@ -23,6 +24,7 @@ use super::shapes::{self, Cells};
 use initial_values::InitialShape;
 pub use ports::JumpIntoBladder;
 use statics::Shape;
+use tapers::Taper;
 
 /// Relative mesh error of a shape's effect above which there is a warning.
 pub const LIMIT: f64 = 0.05;
@@ -90,6 +92,10 @@ fn of_beam_and_bladders(case: &Case, system: &System, later: bool) -> Vec<MeshFi
         };
         all.push(finding(format!("/contacts/{k}/circle"), cells, along, on));
     }
+    for taper in Taper::all(case) {
+        let on = |cells: usize| (taper.left_out(cells), tapers::WHAT).into();
+        all.push(finding(taper.pointer.clone(), cells, along, on));
+    }
     for begun in InitialShape::all(case, system) {
         let on = |cells: usize| {
             let cells = segments * cells;
@@ -142,6 +148,15 @@ pub fn cells_that_resolve(case: &Case, system: &System) -> [usize; 2] {
         let those = all.iter().filter(|finding| finding.setting == setting);
         those.filter_map(|finding| finding.wanted).fold(0, usize::max)
     })
+}
+
+/// Cells per segment that resolve the shapes that those of the case do not, at least twice as many; none if all are resolved.
+pub fn finer_cells(case: &Case, system: &System) -> Option<usize> {
+    let cells = case.mesh.cells_per_segment;
+    let along = unresolved(case, system).into_iter();
+    let along = along.filter(|finding| finding.at_rest && finding.setting == "/mesh/cells_per_segment");
+    let wanted = along.map(|finding| finding.wanted.unwrap_or(FINEST)).max()?;
+    Some(wanted.max(2 * cells))
 }
 
 /// A warning for every unresolved shape.

@@ -2,7 +2,7 @@
 //! twice the cells of a bladder, and all effects.
 //!
 //! ```text
-//! beam      second order   e = S |x(K) - x(K/2)|/3,  or 4 S |x(2K) - x(K)|/3 where cells cannot be halved
+//! beam      second order   e = S |x(K) - x(K/2)|/3,  or 4 S |x(2K) - x(K)|/3 where cells cannot be halved, or do not resolve a shape
 //! bladders  first order    e = 2 |x(2G) - x(G)|
 //! ```
 //!
@@ -15,7 +15,8 @@ use serde::{Deserialize, Serialize};
 
 use super::{RefinedNumbers, SAFETY, has_cells_along_bladders};
 use crate::case::Case;
-use crate::discrete::resolution::LIMIT as LARGE;
+use crate::discrete::System;
+use crate::discrete::resolution::{self, LIMIT as LARGE};
 use crate::error::numbers::error_percent as percent;
 use crate::error::{Code, Error, Result};
 use crate::study::effects::full_model::full;
@@ -72,12 +73,13 @@ pub fn judge(
 ) -> Result<Meshes> {
     let mut found = Meshes::default();
     let mut other = case.clone();
-    let halved = case.mesh.cells_per_segment.is_multiple_of(2);
+    let finer = resolution::finer_cells(case, &System::new(case)?);
+    let halved = case.mesh.cells_per_segment.is_multiple_of(2) && finer.is_none();
     let factor = if halved {
         other.mesh.cells_per_segment /= 2;
         SAFETY / 3.0
     } else {
-        other.mesh.cells_per_segment *= 2;
+        other.mesh.cells_per_segment = finer.unwrap_or(2 * case.mesh.cells_per_segment);
         SAFETY * 4.0 / 3.0
     };
     found.compare("beam", here, compute(&other), factor, |share| &mut share.beam);
