@@ -92,7 +92,7 @@ fn the_lowest_oscillations_are_listed_for_every_count() {
 fn oscillations_beside_a_cluster_are_found() {
     let dir = TempDir::new().unwrap();
     let found = |cells: &str| {
-        let (out, set) = (dir.path().join(cells), format!("/mesh/cells_per_bladder={cells}"));
+        let (out, set) = (dir.path().join(cells), format!("/mesh/cells_per_segment={cells}"));
         let case = ["cases/tour-beam.json", "--set", &set, "--json", "--quiet"];
         let (code, said, error) =
             modes(&[&case[..], &["--kind", "oscillation", "--out", out.to_str().unwrap()]].concat());
