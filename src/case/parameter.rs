@@ -4,9 +4,10 @@ use serde::{Deserialize, Serialize};
 use std::path::Path;
 
 use serde_json::Value;
+use slcbeam_section::input::Section;
 
 use super::origins::Origin;
-use super::schema::{Case, FluidKind};
+use super::schema::{Case, FluidKind, SpanRows};
 use super::wording::nearest;
 use super::{parse, section};
 use crate::error::{Error, Result};
@@ -98,14 +99,11 @@ impl Parameter {
                 PARTS.join(", /")
             ));
         }
-        let span = in_span
-            .rsplit('/')
-            .next()
-            .and_then(|k| case.spans.get(k.parse::<usize>().ok()?));
-        if inner == "/length_m" && span.is_some_and(|span| span.section.is_some()) {
-            return usage(
-                "the span has a section, and the distance of its bladders would change with the length".into(),
-            );
+        if let Some(section) = pitched_section(case, pointer) {
+            return usage(format!(
+                "it changes the distance of bladders, for which the coefficients of {section} are computed; use \
+                 `slcbeam sweep --vary` with whole pitches, which computes the section again"
+            ));
         }
         let stiffness = case.origins.get(&format!("{in_span}/beam/axial_stiffness_factor"));
         if section::SIZES.contains(&inner) && matches!(stiffness, Some(Origin::Section { .. })) {
@@ -160,6 +158,27 @@ impl Parameter {
 fn in_span(pointer: &str) -> (&str, &str) {
     let inner = pointer.strip_prefix("/spans/").and_then(|rest| rest.find('/'));
     pointer.split_at(inner.map_or(0, |at| at + "/spans/".len()))
+}
+
+/// Pointer of a section with bladders whose pitch would change with the length at a pointer: in the span itself or in the rest of the beam.
+fn pitched_section(case: &Case, pointer: &str) -> Option<String> {
+    let has_bladders = |section: &Section| section::rows(section) != SpanRows::None;
+    let of_case = case.section.as_ref().is_some_and(has_bladders);
+    let own = match pointer.strip_suffix("/length_m")? {
+        "/beam" if case.spans.is_empty() => return of_case.then(|| "/section".into()),
+        "/beam" => None,
+        span => Some(span.strip_prefix("/spans/")?.parse().ok()?),
+    };
+    let rest = case.spans.iter().position(|span| span.length_m.is_none());
+    own.into_iter().chain(rest).find_map(|k: usize| {
+        let span = case.spans.get(k)?;
+        let pitched = match &span.section {
+            Some(section) if has_bladders(section) => return Some(format!("/spans/{k}/section")),
+            Some(_) => span.segments.is_none(),
+            None => span.segments.is_none() || span.rows != SpanRows::None,
+        };
+        (of_case && pitched).then(|| "/section".into())
+    })
 }
 
 /// Returns a case as JSON with every default filled in, including openings of fully open valves, which files omit.

@@ -375,3 +375,24 @@ fn the_case_of_a_result_keeps_the_sections_of_spans() {
         (0.7, &before[12].bladders)
     );
 }
+
+/// Goal: lengths that change the pitch of a section, in their span or in the rest of the beam, are refused as parameters.
+#[test]
+fn lengths_that_change_the_pitch_of_a_section_are_refused() {
+    let mut full = small();
+    full["bladders"] = json!({"length_m": 0.014, "upper": "none", "lower": "none"});
+    let ends = json!([{"length_m": 0.04}, {"length_m": 0.02, "segments": 1, "section": full}, {"segments": 1, "rows": "none"}]);
+    for (case, pointer, section) in [
+        (two_sections(), "/spans/0/length_m", "/section"),
+        (two_sections(), "/beam/length_m", "/spans/1/section"),
+        (actuator(10, &json!([])), "/beam/length_m", "/section"),
+        (actuator(5, &ends), "/spans/0/length_m", "/section"),
+        (actuator(5, &ends), "/spans/1/length_m", ""),
+    ] {
+        let found = slcbeam::case::parameter::Parameter::find(&read(&case, &[]).unwrap(), pointer);
+        let text = found.map_or_else(|error| error.to_string(), |_| String::new());
+        let part = format!("coefficients of {section} are computed; use `slcbeam sweep --vary`");
+        assert_eq!(text.contains(&part), !section.is_empty(), "{pointer}: {text}");
+        assert_eq!(text.is_empty(), section.is_empty(), "{pointer}: {text}");
+    }
+}
