@@ -309,7 +309,39 @@ fn coefficients_belong_to_the_first_bladders() {
         values[1].bladders.as_ref().unwrap()[0],
         *parse(&case).bladders.as_ref().unwrap()
     );
-    case["spans"][1]["beam"] = json!({"height_m": {"linear": [0.0216, -0.001]}});
-    let text = faults(&case);
-    assert!(text.contains("numbers above 0 throughout the span"), "{text}");
+}
+
+/// Goal: a taper that vanishes or is negative anywhere is refused with its place, also at the ends of the span and between the segments.
+#[test]
+fn tapers_are_positive_throughout() {
+    let dip = |amplitude: f64| json!({"sum": [0.01, {"sine": {"amplitude": amplitude, "waves": 40}}]});
+    let touching = json!({"polynomial": {"coefficients": [0.0009, -0.006, 0.01]}});
+    for (key, taper, place) in [
+        ("height_m", json!({"linear": [0.0216, -0.001]}), "at 1.00 of"),
+        ("height_m", json!({"linear": [0.0216, 0]}), "is 0 at 1.00 of"),
+        ("young_modulus_pa", json!({"linear": [0, 1e6]}), "is 0 at 0 of"),
+        (
+            "density_kg_m3",
+            json!({"table": {"positions": [0, 0.33, 1], "values": [1e3, 0, 1e3]}}),
+            "is 0 at 0.330 of",
+        ),
+        ("mass_factor", json!({"linear": [1, 0]}), "is 0 at 1.00 of"),
+        ("height_m", dip(0.011), "is −0.00100 at"),
+        ("width_m", touching, "at 0.300 of"),
+        ("height_m", dip(0.0099), ""),
+    ] {
+        let case = json!({
+            "name": "taper", "beam": {"length_m": 0.1, "height_m": 0.01, "width_m": 0.02, "young_modulus_pa": 1e6, "density_kg_m3": 1000},
+            "spans": [{"length_m": 0.05}, {"beam": {key: taper}}], "ends": {"root": "clamped", "tip": "free"}, "time": {"end_s": 1.0}
+        });
+        if place.is_empty() {
+            parse(&case);
+            continue;
+        }
+        let text = faults(&case);
+        assert!(
+            text.contains("numbers above 0 throughout the span") && text.contains(place),
+            "{text}"
+        );
+    }
 }

@@ -48,7 +48,7 @@ pub(super) fn check(case: &Case, faults: &mut Violations) {
             let fault = Violation::new(Code::Together, pointer, "shear in one span of a beam without shear");
             faults.push(fault.hint("give /beam/shear_stiffness_n for the other spans"));
         }
-        positive(case, k, span, faults);
+        positive(k, span, faults);
     }
     let none = case.bladders.is_some() && case.spans.iter().all(|span| span.rows == SpanRows::None);
     if none {
@@ -357,22 +357,13 @@ fn counts(case: &Case, all: &SpanLengths, number: &str, segments: usize, faults:
     }
 }
 
-/// Checks that every value is positive in the middle of every segment, and not negative at the ends of the span.
-fn positive(case: &Case, k: usize, span: &Span, faults: &mut Violations) {
-    let places = spans::places(case);
+/// Checks that every value is positive and finite throughout the span.
+fn positive(k: usize, span: &Span, faults: &mut Violations) {
     let signed = |key: &str| key.contains("axis") || key == OTHER_PRESSURE;
     for (part, key, profile) in span.given().filter(|(_, key, _)| !signed(key)) {
-        let here = places.iter().filter(|(span, _)| *span == k);
-        let mut values = here.map(|(_, x)| profile.value(*x)).chain([profile.value(0.5)]);
-        let inside = values.find(|value| !value.is_normal() || *value <= 0.0);
-        let at_end = || {
-            [0.0, 1.0]
-                .map(|x| profile.value(x))
-                .into_iter()
-                .find(|value| *value < 0.0)
-        };
-        if let Some(value) = inside.or_else(at_end) {
-            let what = format!("the value is {} in this span", significant(value, 3));
+        if let Some(place) = profile.vanishes() {
+            let value = significant(profile.value(place), 3);
+            let what = format!("the value is {value} at {} of this span", significant(place, 3));
             let fault = Violation::new(Code::Range, format!("/spans/{k}/{part}/{key}"), what);
             faults.push(fault.allowed("numbers above 0 throughout the span"));
         }

@@ -4,7 +4,7 @@ use std::f64::consts::{FRAC_PI_2, TAU};
 
 use super::enclose::{crests, wave};
 use super::interval::{Bounded, Interval, JetSpan};
-use super::search::{self, IntervalSearch, overflows, sizes};
+use super::search::{self, IntervalSearch, ROUND_OFF, overflows, sizes};
 use super::variation::Variation;
 use crate::functions::jet::Jet;
 use crate::functions::profile::{Profile, line};
@@ -28,6 +28,17 @@ impl Profile {
     /// A place at which value, slope or curvature is or may be infinite or NaN.
     pub fn overflows(&self) -> Option<f64> {
         overflows(&IntervalSearch::new(self, 0.0, 1.0))
+    }
+
+    /// A place at which the profile is 0 or negative but for rounding, or not finite; none if it is positive.
+    pub fn vanishes(&self) -> Option<f64> {
+        let least = (ROUND_OFF * self.size()).max(f64::MIN_POSITIVE);
+        let found = IntervalSearch::new(self, 0.0, 1.0).largest(
+            |span| -span.0[0].low,
+            |jet| -jet.value,
+            |reached, bound, _| reached >= -least || bound < -least,
+        );
+        (found.reached >= -least).then_some(found.place)
     }
 
     /// Upper bounds of `∫ max(profile, 0) dx` and `∫ max(-profile, 0) dx`.
