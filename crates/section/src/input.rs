@@ -25,7 +25,7 @@ pub struct Section {
     pub pitch_m: f64,
     /// Material of the beam outside the regions.
     pub material: Material,
-    /// The two rows of bladders.
+    /// The two rows of bladders. Without bladders: `{"length_m": 0.01, "upper": "none", "lower": "none"}`, in which the length has no effect.
     pub bladders: Bladders,
     /// Parts of the cell made of another material: a skin, a stiff sheet, a fibre. None may overlap another or cross a bladder's wall.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
