@@ -34,9 +34,12 @@ impl SegmentValues {
 /// Numbers of segments that the schema allows; a list of more may not fit into memory.
 const POSSIBLE: RangeInclusive<usize> = 1..=1_000_000;
 
-/// True if the number of segments is one that the schema allows, so that spans can be resolved.
+/// True if all numbers of segments are those that the schema allows, so that spans can be resolved.
 pub fn countable(case: &Case) -> bool {
-    POSSIBLE.contains(&case.segments())
+    let of_spans = case.spans.iter().filter_map(|span| span.segments);
+    of_spans
+        .chain([case.segments()])
+        .all(|number| POSSIBLE.contains(&number))
 }
 
 /// Length of each segment [m].

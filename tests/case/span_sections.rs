@@ -268,6 +268,7 @@ fn sections_that_do_not_fit_are_refused() {
         ("/spans/1/section/pitch_m=0.0045", "/spans/1"),
         ("/spans/1/segments=7", "/spans/1/segments"),
         ("/spans/1/rows=\"upper\"", "/spans/1/rows"),
+        ("/spans/1/rows=\"none\"", "/spans/1/rows"),
         ("/spans/1/beam={\"height_m\": 0.02}", "/spans/1/beam/height_m"),
         (
             "/spans/1/beam={\"height_m\": {\"linear\": [0.016, 0.02]}}",

@@ -345,3 +345,34 @@ fn tapers_are_positive_throughout() {
         );
     }
 }
+
+/// Goal: a number of segments of 0, and rows of a dry beam, are one fault each; a section without bladders is explained where it is missing.
+#[test]
+fn spans_without_segments_or_bladders_are_explained() {
+    let faults_of = |spans: Value| {
+        faults(&json!({
+            "name": "dry", "beam": {"length_m": 0.1, "height_m": 0.01, "width_m": 0.02, "young_modulus_pa": 1e6, "density_kg_m3": 1000},
+            "spans": spans, "ends": {"root": "clamped", "tip": "free"}, "time": {"end_s": 1.0}
+        }))
+    };
+    let section = json!({"height_m": 0.01, "width_m": 0.02, "pitch_m": 0.01,
+        "material": {"young_modulus_pa": 1e6, "poisson_ratio": 0.4, "density_kg_m3": 1000}});
+    for (spans, part, count) in [
+        (
+            json!([{"length_m": 0.05, "segments": 0}, {"length_m": 0.05}]),
+            "0 is out of range",
+            1,
+        ),
+        (json!([{"segments": 0}]), "0 is out of range", 1),
+        (json!([{"rows": "none"}]), "the case has none", 1),
+        (
+            json!([{"rows": "none", "bladders": {"height_m": 0.004}}]),
+            "the case has none",
+            2,
+        ),
+        (json!([{"section": section}]), "\"upper\":", 1),
+    ] {
+        let text = faults_of(spans);
+        assert!(text.contains(part) && text.matches("fault[").count() == count, "{text}");
+    }
+}

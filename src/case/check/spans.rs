@@ -4,7 +4,7 @@ use super::{bladders, coefficients, plausible, span_sections, strength};
 use crate::case::faults::Violations;
 use crate::case::numbers::rounded as plain;
 use crate::case::schema::{Beam, Bladders, Case, Formulation, ROUNDING, Span, SpanLengths, SpanRows};
-use crate::case::spans;
+use crate::case::{section, spans};
 use crate::error::numbers::{counted, significant};
 use crate::error::{Code, Violation};
 
@@ -32,7 +32,12 @@ pub(super) fn check(case: &Case, faults: &mut Violations) {
                 faults.push(fault.hint("remove it for a dry beam, or add \"bladders\" to the case"));
             }
         }
-        if span.rows == SpanRows::None && !span.bladders.is_empty() {
+        // values that a section with bladders gives are not those of the file, and other rows are reported by the section
+        let written = match &span.section {
+            Some(section) => section::rows(section) == SpanRows::None,
+            None => case.bladders.is_some(),
+        };
+        if written && span.rows == SpanRows::None && !span.bladders.is_empty() {
             let what = "the span has values of bladders, but no bladders";
             let fault = Violation::new(Code::Together, format!("/spans/{k}/bladders"), what);
             faults.push(fault.hint("give \"rows\", or remove \"bladders\" from the span"));
