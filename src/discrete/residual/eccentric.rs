@@ -22,7 +22,7 @@ use crate::numerics::Scalar;
 ///
 /// and the viscous part of the force has the curvature rate of the neighboring node.
 ///
-/// Where d or EI jumps, the curvature of both sides of the node differs, `κ_i = s_l κ_l + s_r κ_r`. Each side is such an end, with the
+/// At a node where d or EI jumps, the curvatures of both sides differ, `κ_i = s_l κ_l + s_r κ_r`. Each side is such an end, with the
 /// same moment M, [`Border`].
 pub fn end_curvatures<T: Scalar>(system: &System, now: &TimeData, w: &mut Workspace<T>) {
     if system.sections.offset.is_empty() {

@@ -31,7 +31,7 @@ use crate::numerics::Scalar;
 /// The curvature that determines the end's angle is the mean `κ_n = α_p + κ_0 + (2 M_n/EI + e_{n-1})/3`; its part of the energy is
 /// `h_n M_n (κ_n - α_p - κ_0)/2`.
 ///
-/// Where sections or cell lengths jump, at node b, e jumps. The angle there is eliminated: both sides have the same moment, as two ends
+/// At a node b where sections or cell lengths jump, e jumps. The angle there is eliminated: both sides have the same moment, as two ends
 /// with given moment, and their mean curvatures add up to that of the node. With the compliances `c = h/EI` of the cells beside b,
 ///
 /// ```text
