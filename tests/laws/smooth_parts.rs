@@ -4,7 +4,7 @@
 use serde_json::{Value, json};
 use slcbeam::discrete::System;
 use slcbeam::run::equilibrium::{EquilibriumOptions, columns, follow, system};
-use slcbeam::run::modes::{ModeOptions, modes};
+use slcbeam::run::modes::{ModeOptions, compare_meshes, modes};
 use slcbeam::run::record::Control;
 
 use crate::eccentric::merge;
@@ -95,6 +95,42 @@ fn frequencies_with_spans_are_of_fourth_order() {
         });
         println!("{spans}: {errors:?}");
         assert!(errors[1] < limit && order(errors) > 3.4, "{spans}: {errors:?}");
+    }
+}
+
+/// Goal: frequencies of a coarse stepped cantilever have an error of the mesh, also if half the cells have order 2. It is at least 0.6 of the
+/// true one, and at most three times as large. Tolerance: below 5e-5 errors of a coarse and a fine mesh may be equal by chance.
+#[test]
+fn errors_cover_those_of_coarse_stepped_beams() {
+    for (segments, cells, order) in [
+        (2, 3, 4),
+        (4, 2, 4),
+        (6, 1, 4),
+        (6, 2, 4),
+        (2, 1, 2),
+        (2, 2, 2),
+        (4, 1, 2),
+        (4, 3, 2),
+    ] {
+        let mut case = dry(segments, &stepped());
+        case["mesh"] = json!({"segments": segments, "cells_per_segment": cells, "order": order});
+        case["effects"] = json!({"rotary_inertia": "off"});
+        case["ends"]["tip"] = json!("free");
+        let case = parse(&case);
+        let plan = ModeOptions {
+            count: 2,
+            near_hz: 0.0,
+            limits: false,
+        };
+        let mut found = modes(&case, &plan).unwrap();
+        compare_meshes(&case, None, &plan, &mut found);
+        for (mode, exact) in found.modes.iter().zip(stepped_frequencies()) {
+            let error = (mode.frequency_hz().unwrap() / exact - 1.0).abs();
+            let told = mode.mesh_error().unwrap();
+            println!("{segments} x {cells}, order {order}: {error:.1e}, {told:.1e}");
+            let covered = (0.6..3.0).contains(&(told / error)) || error < 5e-5;
+            assert!(covered, "{segments} x {cells}, {order}: {error} {told}");
+        }
     }
 }
 

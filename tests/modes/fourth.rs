@@ -12,10 +12,10 @@ use slcbeam::case;
 use slcbeam::discrete::System;
 use slcbeam::error::Error;
 use slcbeam::run::equilibrium;
-use slcbeam::run::modes::TimeBehavior;
+use slcbeam::run::modes::{self, TimeBehavior};
 use slcbeam::run::record::Control;
 
-use super::common::{checked, slowest};
+use super::common::{checked, plan, slowest};
 
 /// Length 1 m, EI 1 N m^2, 1 kg/m, EA 1.2e5 N.
 fn beam(cells: usize, order: u8) -> Value {
@@ -106,6 +106,61 @@ fn waves_along_are_of_fourth_order() {
     let [coarse, fine] = [of(10), of(20)];
     println!("{coarse:.1e} {fine:.1e}");
     assert!(coarse < 4e-4 && (coarse / fine).log2() > 3.7, "{coarse} {fine}");
+}
+
+/// Goal: on coarse meshes of both orders, each mode has an error that is at least 0.6 and at most three times the true one, or a warning
+/// names it. Source: frequencies of Euler-Bernoulli beams.
+#[test]
+fn errors_cover_those_of_coarse_meshes() {
+    let exact: [(&str, Value, [f64; 3]); 3] = [
+        (
+            "clamped",
+            json!("free"),
+            [1.875104068712, 4.694091132974, 7.854757438238],
+        ),
+        ("pinned", json!("pinned"), [1.0, 2.0, 3.0].map(|n| n * PI)),
+        (
+            "clamped",
+            json!("clamped"),
+            [4.730040744863, 7.853204624096, 10.995607838002],
+        ),
+    ];
+    let mut judged = 0;
+    for (root, tip, roots) in &exact {
+        for (segments, cells, order) in [2, 3, 4, 5]
+            .into_iter()
+            .flat_map(|s| [1, 2, 3].map(|k| (s, k)))
+            .flat_map(|(s, k)| [2, 4].map(|order| (s, k, order)))
+        {
+            let case = checked(&json!({
+                "name": "coarse", "ends": {"root": root, "tip": tip}, "effects": {"rotary_inertia": "off"},
+                "beam": {"length_m": 1.0, "height_m": 0.01, "width_m": 0.01, "young_modulus_pa": 1.2e9, "density_kg_m3": 1e4},
+                "mesh": {"segments": segments, "cells_per_segment": cells, "order": order}, "time": {"end_s": 1.0}
+            }));
+            let mut found = modes::modes(&case, &plan(3)).unwrap();
+            modes::compare_meshes(&case, None, &plan(3), &mut found);
+            let warned = modes::meshes::warning(&found).unwrap_or_default();
+            let across = found.modes.iter().enumerate();
+            let across = across.filter(|(_, m)| m.kind.swings() && m.shape.transverse() > 0.5);
+            for ((k, mode), beta) in across.zip(roots) {
+                let true_error = (mode.s.im / (beta * beta) - 1.0).abs();
+                let what = format!("{root} {tip}, {segments} x {cells}, order {order}, mode {}", k + 1);
+                match mode.mesh_error() {
+                    Some(told) => {
+                        let ratio = told / true_error;
+                        println!("{what}: {true_error:.1e}, {told:.1e}");
+                        assert!((0.6..3.0).contains(&ratio), "{what}: {true_error} {told}");
+                        judged += 1;
+                    }
+                    None => assert!(
+                        warned.contains("not known") && warned.contains(&(k + 1).to_string()),
+                        "{what}: {warned}"
+                    ),
+                }
+            }
+        }
+    }
+    assert!(judged > 150, "{judged}");
 }
 
 /// Pinned at both ends and stretched, on a mesh of fourth order.

@@ -49,7 +49,17 @@ pub fn table(report: &Report) -> String {
         text += &aligned(&lines, &words);
     }
     text += &staying(report);
-    if found.modes.iter().any(|m| m.mesh_error().or(m.rate_error()).is_some()) {
+    let compared = |finer| {
+        let mut by_mesh = found.modes.iter().map(|mode| mode.by_mesh);
+        by_mesh.any(|by| by.beam.is_some() && by.finer == finer)
+    };
+    let cells = match [compared(false), compared(true)] {
+        [true, false] => Some("half"),
+        [false, true] => Some("twice"),
+        [true, true] => Some("half or twice"),
+        [false, false] => None,
+    };
+    if let Some(cells) = cells {
         let bladders = if found.bladders_compared {
             " and twice those of each bladder"
         } else {
@@ -57,10 +67,8 @@ pub fn table(report: &Report) -> String {
         };
         let _ = writeln!(
             text,
-            "\nmesh error: estimate from half the cells of the beam{bladders}, to second order"
+            "\nmesh error: estimate from {cells} the cells of the beam{bladders}"
         );
-    } else if found.modes.iter().any(|m| m.by_mesh.bladders.is_some()) {
-        text += "\nmesh error: not known, since the cells of the beam cannot be halved; use an even /mesh/cells_per_segment\n";
     }
     if found.modes.iter().any(|m| m.undrained.is_some() || m.drained.is_some()) {
         text += "\nundrained: the same shape with every bladder sealed; drained: with networks of one pressure\n";

@@ -1,7 +1,8 @@
 //! Effect of the meshes along the beam and along the bladders on modes: a comparison with half the cells of the beam, and with
 //! twice the cells of a bladder.
 //!
-//! A bladder has few cells: half of them are often zero, and cannot represent flow within a bladder.
+//! Half the cells of the beam may not resolve a mode, or may be of another order. Such a mode is compared with twice the cells. A
+//! bladder has few cells: half of them are often zero, and cannot represent flow within a bladder.
 
 use nalgebra::Complex;
 
@@ -15,9 +16,11 @@ use crate::case::schema::Effect;
 use crate::discrete::resolution::LIMIT as LARGE;
 use crate::error::{Code, Result};
 
-/// Error over the difference to half the cells, for meshes of second and fourth order; over that to twice the cells, for second order.
-const TO_HALF: [f64; 2] = [1.0 / 3.0, 1.0 / 15.0];
-const TO_TWICE: f64 = 4.0 / 3.0;
+/// Error over the difference to half or to twice the cells, for a mesh of second or fourth order.
+fn share(finer: bool, fourth: bool) -> f64 {
+    let by = if fourth { 16.0 } else { 4.0 };
+    if finer { by / (by - 1.0) } else { 1.0 / (by - 1.0) }
+}
 
 /// Errors due to the meshes: `s` in the limit of fine meshes minus `s` [1/s]. `None` if the mesh was not changed, or if the other mesh
 /// has no such mode.
@@ -29,13 +32,14 @@ pub struct ByMesh {
     pub bladders: Option<Complex<f64>>,
     /// True if beam cells are of fourth order. A part of their error may be of second order, so the error may be as large as for that.
     pub fourth: bool,
+    /// True if the beam was compared with twice the cells, false with half of them.
+    pub finer: bool,
 }
 
 impl ByMesh {
     /// Possible errors along the beam and along bladders [1/s].
     pub fn off(&self) -> impl Iterator<Item = Complex<f64>> {
-        let [second, fourth] = TO_HALF;
-        let by = if self.fourth { second / fourth } else { 1.0 };
+        let by = share(self.finer, false) / share(self.finer, self.fourth);
         self.beam.map(|beam| beam * by).into_iter().chain(self.bladders)
     }
 }
@@ -50,8 +54,18 @@ pub fn compare_meshes(case: &Case, at_rest_under: Option<f64>, plan: &ModeOption
         Some(at) => at_equilibrium(case, at),
         None => linearise(case, at, None),
     };
-    if let Some(coarse) = halved(case) {
-        along_the_beam(about(&coarse), plan, found);
+    found.compared = true;
+    let enough = found.about.system().mesh.cells >= 2 * FEWEST;
+    if let Some(coarse) = halved(case).filter(|_| enough) {
+        along_the_beam(about(&coarse), plan, false, found);
+    }
+    if found.modes.iter().any(|mode| mode.lacks_beam_error()) {
+        along_the_beam(
+            about(&doubled(case, found.about.system().mesh.fourth)),
+            plan,
+            true,
+            found,
+        );
     }
     let flows = found.about.flows() && found.about.system().model.effects.has(Effect::FlowAlongBladders);
     found.bladders_compared = flows;
@@ -61,6 +75,9 @@ pub fn compare_meshes(case: &Case, at_rest_under: Option<f64>, plan: &ModeOption
         along_bladders(about(&fine), plan, found);
     }
 }
+
+/// Minimum number of cells of a beam that is compared as the half of another.
+const FEWEST: usize = 8;
 
 /// The case with half the cells, if they can be halved.
 fn halved(case: &Case) -> Option<Case> {
@@ -74,55 +91,82 @@ fn halved(case: &Case) -> Option<Case> {
     Some(case)
 }
 
-fn along_the_beam(about: Result<Linearised>, plan: &ModeOptions, found: &mut Modes) {
+/// The case with twice the cells, of the same order: a mesh of few cells has order 2.
+fn doubled(case: &Case, fourth: bool) -> Case {
+    let mut case = case.clone();
+    case.mesh.cells_per_segment *= 2;
+    case.mesh.order = Some(if fourth { 4 } else { 2 });
+    case
+}
+
+/// Half the cells resolve an oscillation above this likeness and below this relative difference. Otherwise the difference may be too
+/// small by chance.
+const RESOLVED: f64 = 0.98;
+const SMALL: f64 = 0.15;
+
+/// Likeness above which an oscillation on twice the cells is the same.
+const SAME: f64 = 0.8;
+
+/// Compares those modes whose error is not known with another mesh of the beam.
+fn along_the_beam(about: Result<Linearised>, plan: &ModeOptions, finer: bool, found: &mut Modes) {
     let fourth = found.about.system().mesh.fourth;
     // a mesh of few cells has another order
     if about.as_ref().is_ok_and(|other| other.system().mesh.fourth != fourth) {
         return;
     }
-    let every_other: Vec<Mode> = found
-        .modes
-        .iter()
-        .map(|mode| Mode {
+    let every_other = |modes: &[Mode]| -> Vec<Mode> {
+        let coarser = |mode: &Mode| Mode {
             shape: mode.shape.on_every_other_node(),
             ..mode.clone()
-        })
-        .collect();
-    let Some((others, pairs)) = elsewhere(about, plan, &every_other, found) else {
+        };
+        modes.iter().map(coarser).collect()
+    };
+    let Some(others) = elsewhere(about, plan, found) else {
         return;
+    };
+    let (length, modes) = (found.about.system().model.length, &found.modes);
+    let pairs = match finer {
+        true => pairs(modes, &every_other(&others), length),
+        false => pairs(&every_other(modes), &others, length),
     };
     for (k, j, likeness) in pairs {
         let (mode, other) = (&mut found.modes[k], &others[j]);
-        mode.by_mesh.beam = Some((mode.s - other.s) * TO_HALF[usize::from(fourth)]);
-        mode.by_mesh.fourth = fourth;
+        let change = if finer { other.s - mode.s } else { mode.s - other.s };
+        let resolved = match finer {
+            true => likeness > SAME,
+            false => likeness > RESOLVED && change.norm() < SMALL * mode.s.norm(),
+        };
+        if !mode.lacks_beam_error() || mode.kind.swings() && !resolved {
+            continue;
+        }
+        mode.by_mesh = ByMesh {
+            beam: Some(change * share(finer, fourth)),
+            fourth,
+            finer,
+            ..mode.by_mesh
+        };
         mode.coarse = other
             .frequency_hz()
+            .filter(|_| !finer)
             .map(|frequency_hz| LimitingMode { frequency_hz, likeness });
     }
 }
 
 fn along_bladders(about: Result<Linearised>, plan: &ModeOptions, found: &mut Modes) {
-    let modes = found.modes.clone();
-    let Some((others, pairs)) = elsewhere(about, plan, &modes, found) else {
+    let Some(others) = elsewhere(about, plan, found) else {
         return;
     };
-    for (k, j, _) in pairs {
+    for (k, j, _) in pairs(&found.modes, &others, found.about.system().model.length) {
         let mode = &mut found.modes[k];
-        mode.by_mesh.bladders = Some((others[j].s - mode.s) * TO_TWICE);
+        mode.by_mesh.bladders = Some((others[j].s - mode.s) * share(true, false));
     }
 }
 
 /// Number of additional modes, since the last ones may change their order.
 const MORE: usize = 4;
 
-/// Modes about a state on another mesh, and their pairs with the given modes.
-#[allow(clippy::type_complexity)]
-fn elsewhere(
-    about: Result<Linearised>,
-    plan: &ModeOptions,
-    modes: &[Mode],
-    found: &mut Modes,
-) -> Option<(Vec<Mode>, Vec<(usize, usize, f64)>)> {
+/// Modes about a state on another mesh.
+fn elsewhere(about: Result<Linearised>, plan: &ModeOptions, found: &mut Modes) -> Option<Vec<Mode>> {
     let about = about.ok()?;
     let mut tally = Tally::default();
     let others = [MORE, 0].into_iter().find_map(|more| {
@@ -134,9 +178,14 @@ fn elsewhere(
     })?;
     found.factorizations += tally.factorizations;
     found.solves += tally.solves;
-    let mut pairs = swinging(modes, &others);
-    pairs.extend(real(modes, &others, about.system().model.length));
-    Some((others, pairs))
+    Some(others)
+}
+
+/// Pairs of modes on two meshes with the likeness of their shapes; length of the beam [m].
+fn pairs(modes: &[Mode], others: &[Mode], length: f64) -> Vec<(usize, usize, f64)> {
+    let mut pairs = swinging(modes, others);
+    pairs.extend(real(modes, others, length));
+    pairs
 }
 
 /// Similarity of |s| of two modes; 1 if they are equal.
@@ -182,6 +231,9 @@ const LISTED: usize = 4;
 
 /// Warns of modes that depend strongly on the meshes, or whose dependence is unknown.
 pub fn warning(found: &Modes) -> Option<String> {
+    if !found.compared {
+        return None;
+    }
     let mut large: Vec<(usize, f64, &str)> = vec![];
     let mut unknown: Vec<String> = vec![];
     for (k, mode) in found.modes.iter().enumerate().filter(|(_, mode)| !mode.kind.stays()) {
@@ -191,7 +243,9 @@ pub fn warning(found: &Modes) -> Option<String> {
             .max_by(|a, b| a.1.total_cmp(&b.1));
         match worst {
             Some((what, error)) if error > LARGE => large.push((k + 1, error, what)),
-            _ if found.bladders_compared && mode.by_mesh.bladders.is_none() => unknown.push((k + 1).to_string()),
+            _ if mode.lacks_beam_error() || found.bladders_compared && mode.by_mesh.bladders.is_none() => {
+                unknown.push((k + 1).to_string());
+            }
             _ => {}
         }
     }
@@ -215,7 +269,7 @@ pub fn warning(found: &Modes) -> Option<String> {
     if !unknown.is_empty() {
         let plural = if unknown.len() == 1 { "" } else { "s" };
         sentences.push(format!(
-            "the effect of the mesh along bladders on mode{plural} {} is not known",
+            "the error of the meshes is not known for mode{plural} {}, which finer meshes lack",
             unknown.join(", ")
         ));
     }

@@ -104,7 +104,8 @@ impl Mode {
     /// s ≈ s(h, g) + (s(h, g) - s(2h, g))/3 + 4 (s(h, g/2) - s(h, g))/3        h: cells of the beam, g: of a bladder
     /// ```
     ///
-    /// and a 15th of the difference on a beam of fourth order, [E77]. None if the beam could not be compared.
+    /// and a 15th of the difference on a beam of fourth order, [E77]; from twice the cells of the beam as for a bladder. None if the
+    /// beam could not be compared.
     pub fn extrapolated(&self) -> Option<Complex<f64>> {
         let ByMesh { beam, bladders, .. } = self.by_mesh;
         Some(self.s + beam? + bladders.unwrap_or_default())
@@ -130,6 +131,11 @@ impl Mode {
         (rate > UNDAMPED * self.s.norm())
             .then(|| self.off(|s| s.re, rate))
             .flatten()
+    }
+
+    /// True if the mode moves and its error due to the mesh of the beam is not known.
+    fn lacks_beam_error(&self) -> bool {
+        !self.kind.stays() && self.by_mesh.beam.is_none()
     }
 
     fn off(&self, part: fn(Complex<f64>) -> f64, of: f64) -> Option<f64> {
@@ -175,6 +181,8 @@ pub struct Modes {
     pub lost: usize,
     /// True if decays form a cluster at which the search from zero ended.
     pub clustered: bool,
+    /// True if comparisons with other meshes were made.
+    pub compared: bool,
     /// True if there is a mesh along bladders that could be compared with another.
     pub bladders_compared: bool,
 }
@@ -204,6 +212,7 @@ pub fn compute(about: Linearised, plan: &ModeOptions) -> Result<Modes> {
         radius: tally.radius,
         lost: tally.lost,
         clustered: tally.clustered,
+        compared: false,
         bladders_compared: false,
     };
     if plan.limits {
