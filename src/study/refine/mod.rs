@@ -19,7 +19,7 @@ use std::time::Instant;
 use super::accuracy::plan;
 use crate::case::Case;
 use crate::case::schema::Effect;
-use crate::discrete::{BeamMesh, System};
+use crate::discrete::{BeamMesh, System, resolution};
 use crate::error::numbers::error_percent as percent;
 use crate::error::{Code, Result};
 use crate::model::Model;
@@ -140,6 +140,10 @@ pub fn refine(
         cells: FIRST.cells.max(cells.next_power_of_two()),
         ..FIRST
     };
+    // meshes that do not see a load or a taper agree about it
+    let begun = search.variant(at);
+    let [seeing, _] = resolution::cells_that_resolve(&begun, &System::new(&begun)?);
+    at.cells = at.cells.max(seeing.next_power_of_two().min(FINEST));
     // a coarse mesh may have no result: fewer modes than requested, no equilibrium
     let settled = SETTLED * asked;
     while let Err(fault) = search.look(at, settled, compute) {
