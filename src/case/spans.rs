@@ -154,18 +154,23 @@ pub fn within(case: &Case, segments: &[SegmentValues], parts: usize) -> Vec<Vec<
     segments.iter().zip(all).map(of).collect()
 }
 
-/// Values of the solid at a place of a segment, from 0 to 1, from those in the middle of each segment.
-pub fn solid_at(case: &Case, segments: &[SegmentValues], segment: usize, at: f64) -> Beam {
-    let Some(middle) = segments.get(segment) else {
-        return case.beam.clone();
-    };
-    match places(case).get(segment) {
-        Some(&(span, x)) if !bends_nonlinearly(case) => {
-            let count = SpanLengths::new(case).counts[span].unwrap_or(1) as f64;
-            taper(&case.spans[span], &middle.beam, x + (at - 0.5) / count)
+/// Values of the solid at places, each a segment and the place within it from 0 to 1.
+pub fn solids(case: &Case, at: &[(usize, f64)]) -> Vec<Beam> {
+    let (segments, places, counts) = (segments(case), places(case), SpanLengths::new(case).counts);
+    let whole = bends_nonlinearly(case);
+    let of = |(segment, at): &(usize, f64)| {
+        let Some(middle) = segments.get(*segment) else {
+            return case.beam.clone();
+        };
+        match places.get(*segment) {
+            Some(&(span, x)) if !whole => {
+                let count = counts[span].unwrap_or(1) as f64;
+                taper(&case.spans[span], &middle.beam, x + (at - 0.5) / count)
+            }
+            _ => middle.beam.clone(),
         }
-        _ => middle.beam.clone(),
-    }
+    };
+    at.iter().map(of).collect()
 }
 
 /// Values of the solid at a place of a span, from those at another place. Those that the span does not give follow the scaling laws of

@@ -172,7 +172,7 @@ impl ChainRule {
                     }
                 } else if row < places.forces {
                     let side = row - places.sides;
-                    let j = borders[side / 2].node / k - 1 + side % 2;
+                    let j = borders[side / 2] / k - 1 + side % 2;
                     read(own.mean_moment.start + j, -system.mesh.moment_weight(0));
                 } else if row < places.strains {
                     let cell = row - places.forces;
@@ -230,7 +230,7 @@ impl ChainRule {
             residual::beyond_strains(system, now, w);
             residual::equations(system, now, &b.y, &b.yp, w, &mut b.residual[..places.moments]);
             b.residual[places.moments..places.sides].copy_from_slice(&w.forces.moment);
-            b.residual[places.sides..places.forces].copy_from_slice(&w.forces.side_moment);
+            b.residual[places.sides..places.forces].copy_from_slice(w.forces.side_moment.as_flattened());
             b.residual[places.forces..places.strains].copy_from_slice(&w.forces.normal);
             sweep.entries.iter().for_each(|one| one.add(&b.residual, values));
             sweep.parts.iter().for_each(|one| one.add(&b.residual, &mut self.parts));

@@ -93,7 +93,7 @@ impl Dependence {
             let on = Self {
                 equations: known(&residual),
                 moments: known(&workspace.forces.moment),
-                side_moments: known(&workspace.forces.side_moment),
+                side_moments: known(workspace.forces.side_moment.as_flattened()),
                 forces: known(&workspace.forces.normal),
                 strains: known(&strains),
             };

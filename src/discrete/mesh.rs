@@ -105,17 +105,13 @@ impl BeamMesh {
     /// Divides the mesh into smooth parts at the beginning of segments.
     #[must_use]
     pub fn divided(self, jumps: &[usize]) -> Self {
-        let nodes = |ends: &[usize]| {
-            ends.iter()
-                .map(|segment| segment * self.cells_per_segment)
-                .collect::<Vec<_>>()
-        };
-        let mut within_parts = self.within_parts.clone();
-        nodes(jumps).into_iter().for_each(|node| within_parts[node] = false);
-        let [starts, ends] = [[&[0], jumps].concat(), [jumps, &[self.segments]].concat()].map(|all| nodes(&all));
+        let borders = jumps.iter().map(|segment| segment * self.cells_per_segment);
+        let ends: Vec<usize> = iter::once(0).chain(borders).chain([self.cells]).collect();
+        let mut within_parts = vec![true; self.nodes];
+        ends.iter().for_each(|node| within_parts[*node] = false);
         Self {
             within_parts,
-            parts: starts.into_iter().zip(ends).map(|(start, end)| start..end).collect(),
+            parts: ends.windows(2).map(|ends| ends[0]..ends[1]).collect(),
             ..self
         }
     }

@@ -100,21 +100,19 @@ pub fn read(system: &System, now: &TimeData, w: &mut Workspace<f64>) {
 fn bending(system: &System, now: &TimeData, w: &Workspace<f64>, readings: &mut FourthOrderReadings) {
     let (mesh, moment) = (&system.mesh, &w.forces.moment);
     let last = mesh.cells;
-    readings.moment.copy_from_slice(moment);
-    if let arcs @ [_, ..] = &w.forces.arc_moment[..] {
-        readings
-            .moment
-            .iter_mut()
-            .zip(arcs)
-            .for_each(|(moment, arc)| *moment += arc);
-    }
+    let arcs = &w.forces.arc_moment;
+    let known = |node: usize| arcs.get(node).map_or(moment[node], |arc| moment[node] + arc);
+    readings
+        .moment
+        .iter_mut()
+        .enumerate()
+        .for_each(|(node, moment)| *moment = known(node));
     // work of the change of the section force on the line of a cell, `h² M_b''`
     let by_load = |node: usize| {
         let force = w.forces.section[node] - w.forces.section[node - 1];
         let line = (line(system, w, node) + line(system, w, node - 1)) * 0.5;
         -mesh.lengths[node] * force.dot(line.normal())
     };
-    let known = readings.moment.clone();
     for (part, weights) in mesh.parts.iter().zip(&mesh.weights) {
         let cells = part.len();
         let third = if cells < 6 { 1 } else { 3 };
@@ -144,8 +142,8 @@ fn bending(system: &System, now: &TimeData, w: &Workspace<f64>, readings: &mut F
         return;
     }
     for c in 0..last {
-        let [known, read] = [&known, &readings.moment].map(|m| m[c] - m[c + 1]);
-        let more = (read - known) * w.shape.per_stretch[c] / mesh.lengths[c];
+        let read = readings.moment[c] - readings.moment[c + 1];
+        let more = (read - (known(c) - known(c + 1))) * w.shape.per_stretch[c] / mesh.lengths[c];
         readings.shear[c] = w.forces.shear[c] + more;
     }
 }

@@ -1,7 +1,6 @@
 //! Stiffness and inertia of the beam's sections on a mesh.
 
 use super::BeamMesh;
-use super::residual::eccentric::Border;
 use super::smooth_parts::SmoothBending;
 use crate::model::surroundings::AmbientSection;
 use crate::model::{Model, NodeBending, Section};
@@ -35,7 +34,7 @@ pub struct MeshSections {
     /// `d` of each cell, [E89] [m]; empty if all neutral axes are at the beam's line.
     pub offset: Vec<f64>,
     /// Nodes where d or EI jumps in a beam with `offset`, between parts of two or more cells; empty with moment-curvature laws.
-    pub offset_borders: Vec<Border>,
+    pub offset_borders: Vec<usize>,
     /// `EI` of each cell [N m^2].
     pub bending_of_cells: Vec<f64>,
     /// `kGA` of each cell [N]; infinite without shear.
@@ -56,8 +55,6 @@ pub struct MeshSections {
     pub weighing: Vec<f64>,
     /// Weights of bending on a mesh of fourth order, [E77].
     pub smooth: SmoothBending,
-    /// True if values vary within segments.
-    pub graded: bool,
 }
 
 /// Places on the mesh, and their sections in a model.
@@ -141,9 +138,7 @@ impl MeshSections {
     /// Index of a node among those where neutral axes jump.
     #[inline]
     pub fn offset_border(&self, node: usize) -> Option<usize> {
-        self.offset_borders
-            .binary_search_by_key(&node, |border| border.node)
-            .ok()
+        self.offset_borders.binary_search(&node).ok()
     }
 
     /// `EI` at the place of a node [N m^2].
@@ -172,12 +167,10 @@ impl MeshSections {
             each.map(|(time, stiffness)| if time > 0.0 { stiffness * time } else { 0.0 })
                 .collect()
         };
-        let mut smooth = SmoothBending::default();
-        let mut bending = at_place.clone();
-        if mesh.fourth {
-            smooth = SmoothBending::new(model, mesh, &stiffness);
-            bending = std::mem::take(&mut smooth.means);
-        }
+        let (smooth, bending) = match mesh.fourth {
+            true => SmoothBending::new(model, mesh, &stiffness),
+            false => (SmoothBending::default(), at_place.clone()),
+        };
         let offset = placed.in_cells(|section| section.offset);
         let law = |segment: usize| model.bending.get(segment).unwrap_or(&model.bending[0]);
         Self {
@@ -237,7 +230,7 @@ impl MeshSections {
                     .parts
                     .windows(2)
                     .filter(|pair| pair.iter().all(|part| part.len() > 1))
-                    .map(|pair| Border { node: pair[1].start })
+                    .map(|pair| pair[1].start)
                     .collect(),
             },
             offset: match offset.iter().all(|d| *d == 0.0) {
@@ -262,7 +255,6 @@ impl MeshSections {
             },
             mass: placed.at_nodes(&masses, |section| section.mass_per_length),
             weighing: placed.at_nodes(&masses, Section::weighing_per_length),
-            graded: !model.within.is_empty(),
         }
     }
 }

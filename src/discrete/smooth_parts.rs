@@ -46,32 +46,19 @@ pub fn is_steep(model: &Model) -> bool {
     })
 }
 
-/// Weights of the moment at a node between two smooth parts, in EI times the mean curvature of that node and of both nodes beside it.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct SmoothBorder {
-    /// Node.
-    pub node: usize,
-    /// Weights of the node's own value, and of those before and behind it.
-    pub weights: [f64; 3],
-}
-
-impl SmoothBorder {
-    /// [E77]: both sides have the same moment, and their mean curvatures add up to that of the node. `lengths` are those of the cells,
-    /// `stiffness` those of the node and the next one on each side.
-    fn new(node: usize, lengths: [f64; 2], stiffness: [[f64; 2]; 2]) -> Self {
-        let halves = lengths.map(|length| 0.5 * length);
-        let [left, right] = [0, 1].map(|side| {
-            let [own, beside] = end_weights(stiffness[side]);
-            let [at, next] = stiffness[side];
-            [halves[side] * own / at, halves[side] * beside / next]
-        });
-        let own = left[0] + right[0];
-        let mean = halves[0] / stiffness[0][0] + halves[1] / stiffness[1][0];
-        Self {
-            node,
-            weights: [mean / own, -left[1] / own, -right[1] / own],
-        }
-    }
+/// Weights of the moment at a node between two smooth parts, in EI times the mean curvature of that node, the one before and the one behind:
+/// both sides have the same moment, and their mean curvatures add up to that of the node, [E77]. `lengths` are those of the cells,
+/// `stiffness` those of the node and the next one on each side.
+fn border_weights(lengths: [f64; 2], stiffness: [[f64; 2]; 2]) -> [f64; 3] {
+    let halves = lengths.map(|length| 0.5 * length);
+    let [left, right] = [0, 1].map(|side| {
+        let [own, beside] = end_weights(stiffness[side]);
+        let [at, next] = stiffness[side];
+        [halves[side] * own / at, halves[side] * beside / next]
+    });
+    let own = left[0] + right[0];
+    let mean = halves[0] / stiffness[0][0] + halves[1] / stiffness[1][0];
+    [mean / own, -left[1] / own, -right[1] / own]
 }
 
 /// Weights of `M/EI` at an end and of e of its neighbor in the mean curvature e of the end, from the EI of both: 2/3 and 1/3 if equal.
@@ -117,19 +104,17 @@ fn hat_means(values: &[f64]) -> Vec<f64> {
 /// EI on a mesh of fourth order.
 #[derive(Clone, Debug, Default)]
 pub struct SmoothBending {
-    /// Mean at each node [N m^2], with both sides in series between two parts.
-    pub means: Vec<f64>,
-    /// Nodes between parts.
-    pub borders: Vec<SmoothBorder>,
+    /// [`border_weights`] of the nodes between parts.
+    pub borders: Vec<[f64; 3]>,
     /// Corrections in each cell of a beam with tapers; empty without.
     pub steps: Vec<CellSteps>,
-    /// For both ends of the beam, weights of `M/EI` of the end and of e of its neighbor, as in [`SmoothBorder`].
+    /// For both ends of the beam, weights of `M/EI` of the end and of e of its neighbor, as in [`border_weights`].
     pub end_weights: [[f64; 2]; 2],
 }
 
 impl SmoothBending {
-    /// From EI on both sides of each node.
-    pub fn new(model: &Model, mesh: &BeamMesh, sides: &[[f64; 2]]) -> Self {
+    /// From EI on both sides of each node. Also returns the mean of EI at each node, with both sides in series between two parts.
+    pub fn new(model: &Model, mesh: &BeamMesh, sides: &[[f64; 2]]) -> (Self, Vec<f64>) {
         let of_part = |Range { start, end }: &Range<usize>| {
             let values = (*start..*end).map(|node| sides[node][1]).chain([sides[*end][0]]);
             hat_means(&values.collect::<Vec<f64>>())
@@ -145,8 +130,7 @@ impl SmoothBending {
             }
             means.extend(&pair[1][1..]);
             let beside = [pair[0][range.len() - 1], pair[1][1]];
-            borders.push(SmoothBorder::new(
-                node,
+            borders.push(border_weights(
                 [mesh.lengths[node - 1], mesh.lengths[node]],
                 [0, 1].map(|side| [stiffness[side], beside[side]]),
             ));
@@ -172,14 +156,14 @@ impl SmoothBending {
                 .map(|cell| in_cell(means, cell - part.start, cell))
                 .collect()
         };
-        Self {
+        let bending = Self {
             end_weights: ends.map(|(end, beside)| end_weights([means[end], means[beside]])),
             steps: match model.within.is_empty() {
                 true => vec![],
                 false => parts.iter().zip(&mesh.parts).flat_map(in_part).collect(),
             },
-            means,
             borders,
-        }
+        };
+        (bending, means)
     }
 }

@@ -131,7 +131,7 @@ pub struct Forces<T> {
     /// Moment of the normal forces about neutral axes beside the beam's line at nodes, [E89] [N m].
     pub offset_moment: Vec<T>,
     /// Moments about both neutral axes, left and right, at nodes where they jump [N m].
-    pub side_moment: Vec<T>,
+    pub side_moment: Vec<[T; 2]>,
     /// Addition to the moment by the section's energy at finite strain [N m]; empty without it.
     pub nonlinear_moment: Vec<T>,
     /// Addition to the normal force by the section's energy at finite strain [N].
@@ -353,7 +353,7 @@ impl<T: Scalar> Workspace<T> {
                 relaxing_shear: zeros(relaxation.shear.len().min(c)),
                 turning: zeros(sheared),
                 arc_moment: zeros(if bent { n } else { 0 }),
-                side_moment: zeros(2 * system.sections.offset_borders.len()),
+                side_moment: vec![[T::zero(); 2]; system.sections.offset_borders.len()],
                 offset_moment: zeros(if system.sections.offset.is_empty() { 0 } else { n }),
                 nonlinear_moment: zeros(nonlinear * n),
                 nonlinear_normal: zeros(nonlinear * c),

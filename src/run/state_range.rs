@@ -29,9 +29,9 @@ impl StateRange {
     /// Adds a state of scaled unknowns at an instant [s].
     pub fn add(&mut self, dae: &mut BeamDae, t: f64, y: &[f64]) {
         let (system, now, w) = dae.evaluate(t, y, &vec![0.0; y.len()]);
-        let glance = MonitoredValues::new(system, now, t, w);
-        self.beyond = self.beyond.take().or_else(|| self.limits.beyond(&glance));
-        self.seen.take(&self.limits, None, &glance);
+        let values = MonitoredValues::new(system, now, t, w);
+        self.beyond = self.beyond.take().or_else(|| self.limits.beyond(&values));
+        self.seen.take(&self.limits, None, &values);
     }
 
     /// Warnings about the states.

@@ -146,10 +146,10 @@ fn errors_cover_those_of_coarse_meshes() {
                 let true_error = (mode.s.im / (beta * beta) - 1.0).abs();
                 let what = format!("{root} {tip}, {segments} x {cells}, order {order}, mode {}", k + 1);
                 match mode.mesh_error() {
-                    Some(told) => {
-                        let ratio = told / true_error;
-                        println!("{what}: {true_error:.1e}, {told:.1e}");
-                        assert!((0.6..3.0).contains(&ratio), "{what}: {true_error} {told}");
+                    Some(stated) => {
+                        let ratio = stated / true_error;
+                        println!("{what}: {true_error:.1e}, {stated:.1e}");
+                        assert!((0.6..3.0).contains(&ratio), "{what}: {true_error} {stated}");
                         judged += 1;
                     }
                     None => assert!(

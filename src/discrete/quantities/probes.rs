@@ -2,7 +2,7 @@
 
 use super::Observable;
 use super::evaluate::StateView;
-use crate::case::schema::{Case, Probe as Written};
+use crate::case::schema::{Case, Probe as Written, ROUNDING};
 use crate::case::spans;
 use crate::discrete::angle_unwrapping::{first_angle, rotation, tip_angle};
 use crate::discrete::readings::line;
@@ -40,9 +40,6 @@ pub struct MeshProbe {
     /// EI [N m^2].
     bending: f64,
 }
-
-/// Relative deviation of a place from a node that counts as rounding of decimal fractions.
-const ROUNDING: f64 = 1e-9;
 
 /// One row of the table: last part of the column name, unit, description, need of bladders, evaluation.
 type Entry = (
@@ -157,18 +154,25 @@ fn entries(system: &System) -> impl Iterator<Item = (&MeshProbe, Entry)> {
 impl MeshProbe {
     /// Probes of a case.
     pub fn all(case: &Case, mesh: &BeamMesh, sections: &MeshSections) -> Vec<Self> {
-        let segments = spans::segments(case);
-        let probe = |probe: &Written| {
-            let mut one = Self::new(&probe.name, probe.at, mesh, sections);
-            let k = mesh.cells_per_segment;
-            let at = ((one.node.0 - one.segment * k) as f64 + one.node.1) / k as f64;
-            let beam = spans::solid_at(case, &segments, one.segment, at);
-            one.surfaces = [0.5, -0.5].map(|side| side * beam.height_m - beam.line_height());
-            one.young_modulus = beam.young_modulus_pa;
-            one.bending = beam.young_modulus_pa * beam.second_moment();
-            one
+        if case.probes.is_empty() {
+            return vec![];
+        }
+        let probe = |probe: &Written| Self::new(&probe.name, probe.at, mesh, sections);
+        let mut all: Vec<Self> = case.probes.iter().map(probe).collect();
+        let k = mesh.cells_per_segment;
+        let place = |one: &Self| {
+            (
+                one.segment,
+                ((one.node.0 - one.segment * k) as f64 + one.node.1) / k as f64,
+            )
         };
-        case.probes.iter().map(probe).collect()
+        let solids = spans::solids(case, &all.iter().map(place).collect::<Vec<_>>());
+        for (one, solid) in all.iter_mut().zip(solids) {
+            one.surfaces = [0.5, -0.5].map(|side| side * solid.height_m - solid.line_height());
+            one.young_modulus = solid.young_modulus_pa;
+            one.bending = solid.young_modulus_pa * solid.second_moment();
+        }
+        all
     }
 
     fn new(name: &str, at: f64, mesh: &BeamMesh, sections: &MeshSections) -> Self {
@@ -279,7 +283,7 @@ impl MeshProbe {
     fn own_moment(&self, look: &StateView, node: usize) -> f64 {
         let side = usize::from(node == self.node.0);
         match look.system.sections.offset_border(node) {
-            Some(border) => look.w.forces.side_moment[2 * border + side],
+            Some(border) => look.w.forces.side_moment[border][side],
             None => look.w.linear_moments()[node],
         }
     }
@@ -311,19 +315,10 @@ impl MeshProbe {
     /// ```
     fn stress(&self, look: &StateView, side: usize) -> f64 {
         let (sections, forces) = (&look.system.sections, &look.w.forces);
-        let normal = |c: usize| {
-            forces
-                .relaxing_normal
-                .get(c)
-                .map_or(0.0, |force| force / sections.axial[c])
-        };
-        let moment = |i: usize| {
-            forces
-                .relaxing_moment
-                .get(i)
-                .map_or(0.0, |moment| moment / self.bending)
-        };
-        let relaxing = between(self.strained, normal) + self.surfaces[side] * self.of_nodes(moment);
+        let part = |forces: &[f64], k: usize| forces.get(k).copied().unwrap_or(0.0);
+        let normal = |c: usize| part(&forces.relaxing_normal, c) / sections.axial[c];
+        let moment = self.of_nodes(|i| part(&forces.relaxing_moment, i));
+        let relaxing = between(self.strained, normal) + self.surfaces[side] * moment / self.bending;
         self.young_modulus * (self.surface(look, side) + relaxing)
     }
 

@@ -16,8 +16,8 @@ use crate::numerics::{Planar, Scalar};
 /// ```
 ///
 /// with an error of order `h^4`: in the mean of r' = λ e_t + γ e_n, the term `h²/12 θ' (γ', -λ')` is the variation of λ and γ while
-/// sections rotate. A node at an end of a smooth part, and one between segments whose stretches by pressure differ, has no Δ; that of the cell's other node is
-/// used. Forces and moments are derivatives of the energy: those of [E79] with `N λ + V γ`, and
+/// sections rotate. A node at an end of a smooth part, and one between segments whose stretches by pressure differ, has no Δ; that of the
+/// cell's other node is used. Forces and moments are derivatives of the energy: those of [E79] with `N λ + V γ`, and
 ///
 /// ```text
 /// (N, V) of the cell behind node i gains κ_i h/24 (-ΣV, ΣN), of that before it the opposite, ΣN and ΣV over both

@@ -23,13 +23,13 @@ use crate::numerics::Scalar;
 /// and the viscous part of the force has the curvature rate of the neighboring node.
 ///
 /// At a node where d or EI jumps, the curvatures of both sides differ, `κ_i = s_l κ_l + s_r κ_r`. Each side is such an end, with the
-/// same moment M, [`Border`].
+/// same moment M: `κ_s = (M + B_s)/A_s`, with `A = EI + EA d²/2` and `M + B` the numerator above.
 pub fn end_curvatures<T: Scalar>(system: &System, now: &TimeData, w: &mut Workspace<T>) {
     if system.sections.offset.is_empty() {
         return;
     }
-    for k in 0..system.sections.offset_borders.len() {
-        w.shape.side_curvature[k] = system.sections.offset_borders[k].curvatures(system, now, w);
+    for (k, node) in system.sections.offset_borders.iter().enumerate() {
+        w.shape.side_curvature[k] = side_curvatures(system, now, w, *node);
     }
     for end in ends(system, now) {
         let [bending, axial] = end.stiffness(system);
@@ -63,56 +63,37 @@ fn force_by_neighbor<T: Scalar>(
     (w.shape.strain[cell] - pressure_stretch(system, w, cell)) * axial + bent * (axial * offset)
 }
 
-/// Node at which d or EI jumps, between parts of at least two cells.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Border {
-    /// Node.
-    pub node: usize,
+/// Curvature without moment of both sides of a node between two segments.
+fn free_curvatures<T: Scalar>(system: &System, now: &TimeData, w: &Workspace<T>, node: usize) -> [T; 2] {
+    let rest = T::constant(now.rest_curvature(node));
+    let (segments, _) = system.mesh.sides_of_node(node);
+    segments.map(|segment| segment_curvature(system, w, segment) + rest)
 }
 
-impl Border {
-    /// Cells beside the node, and their nodes beyond it.
-    fn sides(&self) -> [[usize; 2]; 2] {
-        [[self.node - 1, self.node - 1], [self.node, self.node + 1]]
-    }
-
-    /// Curvature without moment of both sides of the node.
-    fn free<T: Scalar>(&self, system: &System, now: &TimeData, w: &Workspace<T>) -> [T; 2] {
-        let rest = T::constant(now.rest_curvature(self.node));
-        let (left, right) = system.mesh.segments_of_node(self.node);
-        [left, right].map(|segment| segment_curvature(system, w, segment) + rest)
-    }
-
-    /// Curvatures of both sides: `κ_s = (M + B_s)/A_s`, with `A = EI + EA d²/2` and B as in [`end_curvatures`].
-    fn curvatures<T: Scalar>(&self, system: &System, now: &TimeData, w: &Workspace<T>) -> [T; 2] {
-        let (free, shares) = (self.free(system, now, w), system.mesh.sides_of_node(self.node).1);
-        let (sides, bending) = (self.sides(), system.sections.bending_beside[self.node]);
-        let of = |side: usize| {
-            let [cell, beside] = sides[side];
-            let (axial, offset) = (system.sections.axial[cell], system.sections.offset[cell]);
-            let force = force_by_neighbor(system, now, w, cell, beside, [axial, offset]);
-            let stiffness = bending[side] + 0.5 * axial * offset * offset;
-            (
-                (free[side] * bending[side] - force * offset) * (1.0 / stiffness),
-                1.0 / stiffness,
-            )
-        };
-        let [left, right] = [of(0), of(1)];
-        let compliance = shares[0] * left.1 + shares[1] * right.1;
-        let moment = (w.shape.kappa[self.node] - left.0 * shares[0] - right.0 * shares[1]) * (1.0 / compliance);
-        [left, right].map(|(curvature, compliance)| curvature + moment * compliance)
-    }
+/// Curvatures of both sides of a node where d or EI jumps.
+fn side_curvatures<T: Scalar>(system: &System, now: &TimeData, w: &Workspace<T>, node: usize) -> [T; 2] {
+    let free = free_curvatures(system, now, w, node);
+    let (bending, (_, shares)) = (system.sections.bending_beside[node], system.mesh.sides_of_node(node));
+    let without_moment = |side: usize, cell: usize, beside: usize| {
+        let (axial, offset) = (system.sections.axial[cell], system.sections.offset[cell]);
+        let force = force_by_neighbor(system, now, w, cell, beside, [axial, offset]);
+        let compliance = 1.0 / (bending[side] + 0.5 * axial * offset * offset);
+        ((free[side] * bending[side] - force * offset) * compliance, compliance)
+    };
+    let [left, right] = [without_moment(0, node - 1, node - 1), without_moment(1, node, node + 1)];
+    let compliance = shares[0] * left.1 + shares[1] * right.1;
+    let moment = (w.shape.kappa[node] - left.0 * shares[0] - right.0 * shares[1]) * (1.0 / compliance);
+    [left, right].map(|(curvature, compliance)| curvature + moment * compliance)
 }
 
 /// Sets the moments about both neutral axes at nodes where they jump, and their mean.
 pub fn side_moments<T: Scalar>(system: &System, now: &TimeData, w: &mut Workspace<T>) {
-    for (k, border) in system.sections.offset_borders.iter().enumerate() {
-        let (free, shares) = (border.free(system, now, w), system.mesh.sides_of_node(border.node).1);
-        let (curvature, bending) = (w.shape.side_curvature[k], system.sections.bending_beside[border.node]);
+    for (k, &node) in system.sections.offset_borders.iter().enumerate() {
+        let (free, curvature) = (free_curvatures(system, now, w, node), w.shape.side_curvature[k]);
+        let (bending, (_, shares)) = (system.sections.bending_beside[node], system.mesh.sides_of_node(node));
         let [left, right] = [0, 1].map(|side| (curvature[side] - free[side]) * bending[side]);
-        w.forces.side_moment[2 * k] = left;
-        w.forces.side_moment[2 * k + 1] = right;
-        w.forces.moment[border.node] = left * shares[0] + right * shares[1];
+        w.forces.side_moment[k] = [left, right];
+        w.forces.moment[node] = left * shares[0] + right * shares[1];
     }
 }
 
@@ -120,7 +101,7 @@ pub fn side_moments<T: Scalar>(system: &System, now: &TimeData, w: &mut Workspac
 pub fn side_energy(system: &System, w: &Workspace<f64>, node: usize) -> Option<f64> {
     let k = system.sections.offset_border(node)?;
     let bending = system.sections.bending_beside[node];
-    let (shares, moments) = (system.mesh.sides_of_node(node).1, &w.forces.side_moment[2 * k..]);
+    let (shares, moments) = (system.mesh.sides_of_node(node).1, w.forces.side_moment[k]);
     let of = |side: usize| shares[side] * moments[side] * moments[side] / bending[side];
     Some(0.5 * system.mesh.node_lengths[node] * (of(0) + of(1)))
 }
@@ -128,21 +109,9 @@ pub fn side_energy(system: &System, w: &Workspace<f64>, node: usize) -> Option<f
 /// Adds the part of curvature to normal forces, and to viscous ones.
 pub fn normal_forces<T: Scalar>(system: &System, now: &TimeData, w: &mut Workspace<T>) {
     let time = system.model.section.axial_damping_time;
-    let mut borders = system
-        .sections
-        .offset_borders
-        .iter()
-        .zip(&w.shape.side_curvature)
-        .peekable();
-    let (viscosity, mut left_end) = (&system.sections.axial_viscosity, None);
+    let viscosity = &system.sections.axial_viscosity;
     for (c, (d, ea)) in system.sections.offset.iter().zip(&system.sections.axial).enumerate() {
-        let left = left_end.take().unwrap_or(w.shape.kappa[c]);
-        let mut right = w.shape.kappa[c + 1];
-        if let Some((_, sides)) = borders.next_if(|(border, _)| border.node == c + 1) {
-            right = sides[0];
-            left_end = Some(sides[1]);
-        }
-        let bent = (left + right) * 0.5 - T::constant(mean_rest(now, 0, c));
+        let bent = (w.shape.kappa[c] + w.shape.kappa[c + 1]) * 0.5 - T::constant(mean_rest(now, 0, c));
         w.forces.normal[c] += bent * (d * ea);
         if time > 0.0 {
             let mut rate = T::constant(-mean_rest(now, 1, c));
@@ -150,6 +119,12 @@ pub fn normal_forces<T: Scalar>(system: &System, now: &TimeData, w: &mut Workspa
                 rate += w.shape.kappa_rate[node] * weight;
             }
             w.forces.viscous_normal[c] += rate * (d * viscosity[c]);
+        }
+    }
+    for (&node, curvature) in system.sections.offset_borders.iter().zip(&w.shape.side_curvature) {
+        for (cell, curvature) in [node - 1, node].into_iter().zip(curvature) {
+            let (d, ea) = (system.sections.offset[cell], system.sections.axial[cell]);
+            w.forces.normal[cell] += (*curvature - w.shape.kappa[node]) * (0.5 * d * ea);
         }
     }
 }
@@ -230,7 +205,7 @@ fn ends<'a>(system: &'a System, now: &'a TimeData) -> impl Iterator<Item = Given
         })
 }
 
-/// Nodes of a cell with their weights in the mean rate of curvature; an end with a given moment has none, nor has a [`Border`].
+/// Nodes of a cell with their weights in the mean rate of curvature; an end with a given moment has none, nor has a node where neutral axes jump.
 fn viscous_weights(system: &System, now: &TimeData, cell: usize) -> [(usize, f64); 2] {
     let last = system.mesh.nodes - 1;
     let moves = |node: usize| now.end(node).is_none_or(|end| end.slope.is_some());

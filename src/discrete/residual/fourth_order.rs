@@ -54,7 +54,7 @@ pub fn moments<T: Scalar>(system: &System, now: &TimeData, moment: &mut [T]) {
         let at_end = match border {
             None => moment[end],
             Some(border) => {
-                let [own, before, behind] = border.weights;
+                let [own, before, behind] = *border;
                 moment[end] * own + moment[end - 1] * before + moment[end + 1] * behind
             }
         };
@@ -91,7 +91,7 @@ pub fn of_cells<T: Scalar>(system: &System, stiffness: &[f64], values: &mut [T])
     for part in &system.mesh.parts {
         let mut before = T::zero();
         for c in part.start..part.end - 1 {
-            let [to_left, to_right] = cell_steps(system, stiffness, part, c, values[c], values[c + 1]);
+            let [to_left, to_right] = cell_steps(stiffness, part, c, values[c], values[c + 1]);
             values[c] += before + to_left;
             before = to_right;
         }
@@ -108,7 +108,7 @@ pub fn each_step<T: Scalar>(
 ) {
     for part in &system.mesh.parts {
         for c in part.start..part.end - 1 {
-            let [to_left, to_right] = cell_steps(system, stiffness, part, c, value(c), value(c + 1));
+            let [to_left, to_right] = cell_steps(stiffness, part, c, value(c), value(c + 1));
             add(c, to_left);
             add(c + 1, to_right);
         }
@@ -117,16 +117,9 @@ pub fn each_step<T: Scalar>(
 
 /// Corrections of the values of cell `c` and of the next one in a smooth part.
 #[inline]
-fn cell_steps<T: Scalar>(
-    system: &System,
-    stiffness: &[f64],
-    part: &Range<usize>,
-    c: usize,
-    here: T,
-    next: T,
-) -> [T; 2] {
+fn cell_steps<T: Scalar>(stiffness: &[f64], part: &Range<usize>, c: usize, here: T, next: T) -> [T; 2] {
     let g = cell_weight(c, part);
-    if !system.sections.graded || stiffness[c] == stiffness[c + 1] {
+    if stiffness[c] == stiffness[c + 1] {
         let step = (next - here) * g;
         return [-step, step];
     }
@@ -167,8 +160,7 @@ pub fn energy_of_cells(system: &System, stiffness: &[f64], strains: &[f64]) -> f
 /// ```
 ///
 /// In the cell at an end with given moment, and beside a jump of sections or cell lengths, only the other node counts, because κ of the cell
-/// is not an unknown there. The conjugate effect of N
-/// is a moment, `M_i gains (h/h_i) h²/24 κ_i Σ_c N_c λ_c` over the adjacent cells.
+/// is not an unknown there. The conjugate effect of N is a moment, `M_i gains (h/h_i) h²/24 κ_i Σ_c N_c λ_c` over the adjacent cells.
 pub fn arcs<T: Scalar>(system: &System, now: &TimeData, w: &mut Workspace<T>) {
     if !bends_its_cells(system) || !system.model.effects.has(Effect::AxialStretch) {
         return;

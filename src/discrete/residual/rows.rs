@@ -38,7 +38,7 @@ pub fn mean_moment<T: Scalar>(system: &System, w: &Workspace<T>, segment: usize)
     // the segment is on the right of its beginning, and on the left of its end
     for (node, side) in [(segment * k, 1), ((segment + 1) * k, 0)] {
         if let Some(border) = system.sections.offset_border(node) {
-            let own = w.forces.side_moment[2 * border + side];
+            let own = w.forces.side_moment[border][side];
             mean += (own - w.forces.moment[node]) * system.mesh.moment_weight(0);
         }
     }

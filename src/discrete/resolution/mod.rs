@@ -30,7 +30,7 @@ use tapers::Taper;
 pub const LIMIT: f64 = 0.05;
 
 /// Largest number of cells per segment, or per bladder, in the search for a sufficient mesh.
-const FINEST: usize = 1024;
+pub const FINEST: usize = 1024;
 
 /// Mesh error of one shape.
 #[derive(Clone, Debug, PartialEq)]
@@ -150,13 +150,17 @@ pub fn cells_that_resolve(case: &Case, system: &System) -> [usize; 2] {
     })
 }
 
-/// Cells per segment that resolve the shapes that those of the case do not, at least twice as many; none if all are resolved.
-pub fn finer_cells(case: &Case, system: &System) -> Option<usize> {
-    let cells = case.mesh.cells_per_segment;
-    let along = unresolved(case, system).into_iter();
-    let along = along.filter(|finding| finding.at_rest && finding.setting == "/mesh/cells_per_segment");
-    let wanted = along.map(|finding| finding.wanted.unwrap_or(FINEST)).max()?;
-    Some(wanted.max(2 * cells))
+/// Number of cells by a mesh setting, `cells` in the case, that resolves all shapes of these findings: at least twice as many, and at most
+/// `most`. None without a finding.
+pub fn finer<'a>(
+    findings: impl IntoIterator<Item = &'a MeshFinding>,
+    setting: &str,
+    cells: usize,
+    most: usize,
+) -> Option<usize> {
+    let of = findings.into_iter().filter(|finding| finding.setting == setting);
+    let wanted = of.map(|finding| finding.wanted.unwrap_or(usize::MAX)).max();
+    wanted.map(|wanted| wanted.clamp(2 * cells, most))
 }
 
 /// A warning for every unresolved shape.

@@ -1,6 +1,6 @@
 //! Resolution of functions of the place in spans.
 
-use crate::case::schema::{Case, SpanLengths};
+use crate::case::schema::{Case, Span, SpanLengths};
 use crate::functions::Profile;
 
 /// Points of a span in integrals that count as exact, and those of one of its segments.
@@ -28,7 +28,7 @@ impl<'a> Taper<'a> {
     pub fn all(case: &'a Case) -> Vec<Self> {
         let counts = SpanLengths::new(case).counts;
         let spans = case.spans.iter().zip(counts).enumerate();
-        let of = |(k, (span, segments)): (usize, (&'a crate::case::schema::Span, Option<usize>))| {
+        let of = |(k, (span, segments)): (usize, (&'a Span, Option<usize>))| {
             let curved = |profile: &Profile| profile.uniform().is_none() && !matches!(profile, Profile::Linear(_));
             let given = span.beam.given().filter(move |(_, profile)| curved(profile));
             given.filter_map(move |(key, profile)| {

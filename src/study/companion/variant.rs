@@ -133,11 +133,7 @@ impl Variant {
     fn discretized(case: &Case, added: Vec<Effect>) -> Result<Self> {
         let mut case = unrecorded(case);
         let unresolved = resolution::unresolved(&case, &System::new(&case)?);
-        let finer = |setting: &str, cells: usize| {
-            let of = unresolved.iter().filter(|finding| finding.setting == setting);
-            let wanted = of.map(|finding| finding.wanted.unwrap_or(usize::MAX)).max();
-            wanted.map(|wanted| wanted.clamp(2 * cells, FINEST * cells))
-        };
+        let finer = |setting: &str, cells: usize| resolution::finer(&unresolved, setting, cells, FINEST * cells);
         case.solver.rtol = (10.0 * case.solver.rtol).min(TOLERANCES[1]);
         case.solver.max_step_s = case.solver.max_step_s.map(|step| 2.0 * step);
         let [along, in_bladders] = [case.mesh.cells_per_segment, case.mesh.cells_per_bladder];

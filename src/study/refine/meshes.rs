@@ -73,13 +73,17 @@ pub fn judge(
 ) -> Result<Meshes> {
     let mut found = Meshes::default();
     let mut other = case.clone();
-    let finer = resolution::finer_cells(case, &System::new(case)?);
-    let halved = case.mesh.cells_per_segment.is_multiple_of(2) && finer.is_none();
+    let cells = case.mesh.cells_per_segment;
+    let unresolved = resolution::unresolved(case, &System::new(case)?);
+    let at_rest = unresolved.iter().filter(|finding| finding.at_rest);
+    let most = resolution::FINEST.max(2 * cells);
+    let finer = resolution::finer(at_rest, "/mesh/cells_per_segment", cells, most);
+    let halved = cells.is_multiple_of(2) && finer.is_none();
     let factor = if halved {
         other.mesh.cells_per_segment /= 2;
         SAFETY / 3.0
     } else {
-        other.mesh.cells_per_segment = finer.unwrap_or(2 * case.mesh.cells_per_segment);
+        other.mesh.cells_per_segment = finer.unwrap_or(2 * cells);
         SAFETY * 4.0 / 3.0
     };
     found.compare("beam", here, compute(&other), factor, |share| &mut share.beam);
