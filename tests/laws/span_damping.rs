@@ -1,6 +1,6 @@
 //! Damping of materials that differ along a beam, [E83]: against perturbation theory, the uniform beam, balances and differences.
 
-use serde_json::json;
+use serde_json::{Value, json};
 use slcbeam::run::modes::{ModeOptions, modes};
 
 use crate::eccentric::merge;
@@ -57,6 +57,33 @@ fn damping_of_spans_conserves_energy() {
     merge(&mut case, &json!({"beam": {"reference_axis_m": 0.0}}));
     case["spans"][0]["beam"]["neutral_axis_m"] = json!(0.001);
     agrees(&parse(&case), "axis");
+}
+
+/// Goal: damping of a span counts as that of the beam: a rest curvature must not jump, and without inertia every span needs it.
+#[test]
+fn damping_of_a_span_is_checked_as_that_of_the_beam() {
+    let spans = |rest: Value| json!([{"length_m": 0.5, "beam": {"damping": {"bending_time_s": 1e-3, "axial_time_s": 1e-3}}}, {"beam": {"damping": rest}}]);
+    let mut jumping = dry(10, &spans(json!({})));
+    jumping["loads"] =
+        json!([{"rest_curvature_1_m": {"signal": {"ramp": {"to": 1, "start_s": 0.1, "duration_s": 0}}}}]);
+    let text = faults(&jumping);
+    assert!(
+        text.contains("E009") && text.contains("/loads/0/rest_curvature_1_m"),
+        "{text}"
+    );
+    for (rest, missing) in [
+        (json!({}), true),
+        (json!({"bending_time_s": 2e-3, "axial_time_s": 1e-3}), false),
+    ] {
+        let mut case = dry(10, &spans(rest));
+        case["effects"] = json!({"solid_inertia": "off"});
+        let refused = match slcbeam::discrete::System::new(&parse(&case)) {
+            Ok(_) => String::new(),
+            Err(slcbeam::error::Error::Case(refused)) => slcbeam::case::render(&refused, false, 200),
+            Err(other) => panic!("{other:?}"),
+        };
+        assert_eq!(refused.contains("a span has no bending_time_s"), missing, "{refused}");
+    }
 }
 
 /// Goal: negative times and a mesh of fourth order are refused with place and remedy.

@@ -110,10 +110,11 @@ fn signals(case: &Case) -> Vec<(String, Role, &Signal)> {
             all.push((format!("/ends/{name}/{form}/{key}"), role, signal));
         }
     }
+    let damped = case.damping_times().iter().any(|[bending, _]| *bending > 0.0);
     for (i, load) in case.loads.iter().enumerate() {
         if let Some((key, load)) = load.distributed() {
             // with damping of bending rates, the rest curvature must not jump
-            let moves = key == "rest_curvature_1_m" && case.beam.damping.bending_time_s > 0.0;
+            let moves = key == "rest_curvature_1_m" && damped;
             let role = if moves { Role::Motion } else { Role::Other };
             all.push((format!("/loads/{i}/{key}/signal"), role, &load.signal));
         }

@@ -157,6 +157,19 @@ impl Case {
             .map_or(self.mesh.segments.unwrap_or(10), |bladders| bladders.per_row)
     }
 
+    /// Damping times of bending and of stretching [s]: those of each span, or of a beam without spans.
+    pub fn damping_times(&self) -> Vec<[f64; 2]> {
+        let times = |span: Option<&Span>| {
+            let mut damping = self.beam.damping.clone();
+            span.into_iter().for_each(|span| span.beam.damping.apply(&mut damping));
+            [damping.bending_time_s, damping.axial_time_s]
+        };
+        match self.spans.is_empty() {
+            true => vec![times(None)],
+            false => self.spans.iter().map(|span| times(Some(span))).collect(),
+        }
+    }
+
     /// Bladders of the network, [`NO_BLADDERS`] for a network without; none for a dry beam without network.
     pub fn network_bladders(&self) -> Option<&Bladders> {
         let network = self.network.as_ref();

@@ -125,13 +125,17 @@ pub fn axial_force_on_bending(case: &Case, finite_rotation: bool) -> Option<Obst
 /// across and along undamped, so that a part of the equations has rates and the other none.
 pub fn solid_inertia(case: &Case, moves: [bool; 2]) -> Option<Obstacle> {
     let damping = &case.beam.damping;
-    let times = [damping.bending_time_s, damping.axial_time_s].map(|time| time > 0.0);
+    let times = case.damping_times();
+    let damped = times.iter().flatten().any(|time| *time > 0.0);
     let all = case.surroundings.is_some() || damping.drag_n_s_m2 > 0.0 || damping.quadratic_drag_n_s2_m3 > 0.0;
-    let undamped = (0..2).find(|axis| moves[*axis] && !times[*axis]);
-    if let Some(axis) = undamped.filter(|_| !all && times.contains(&true)) {
+    let undamped = (0..2).find(|axis| moves[*axis] && times.iter().any(|times| times[*axis] == 0.0));
+    if let Some(axis) = undamped.filter(|_| !all && damped) {
         let [damped, other] = [["stretching", "bending_time_s"], ["bending", "axial_time_s"]][axis];
         return obstacle(
-            format!("/beam/damping damps {damped} only, and without inertia the other motion has no rates"),
+            match case.spans.is_empty() {
+                true => format!("/beam/damping damps {damped} only, and without inertia the other motion has no rates"),
+                false => format!("a span has no {other}, and without inertia a motion without damping has no rates"),
+            },
             &format!("give {other} too, remove the damping, or leave solid_inertia on"),
         );
     }
