@@ -176,32 +176,23 @@ pub fn solids(case: &Case, at: &[(usize, f64)]) -> Vec<Beam> {
 /// Values of the solid at a place of a span, from those at another place. Those that the span does not give follow the scaling laws of
 /// its section.
 fn taper(span: &Span, other: &Beam, x: f64) -> Beam {
-    let mut beam = other.clone();
-    let given = &span.beam;
-    let at = |profile: &Option<Profile>, value: &mut f64| {
-        if let Some(profile) = profile {
-            *value = profile.value(x);
-        }
-    };
-    at(&given.height_m, &mut beam.height_m);
-    at(&given.width_m, &mut beam.width_m);
-    at(&given.young_modulus_pa, &mut beam.young_modulus_pa);
-    at(&given.density_kg_m3, &mut beam.density_kg_m3);
-    at(&given.axial_stiffness_factor, &mut beam.axial_stiffness_factor);
-    at(&given.bending_stiffness_factor, &mut beam.bending_stiffness_factor);
+    let (mut beam, given) = (other.clone(), &span.beam);
+    let here = |profile: &Option<Profile>| profile.as_ref().map(|profile| profile.value(x));
+    let set = |value: &mut f64, profile: &Option<Profile>| *value = here(profile).unwrap_or(*value);
+    set(&mut beam.height_m, &given.height_m);
+    set(&mut beam.width_m, &given.width_m);
+    set(&mut beam.young_modulus_pa, &given.young_modulus_pa);
+    set(&mut beam.density_kg_m3, &given.density_kg_m3);
+    set(&mut beam.axial_stiffness_factor, &given.axial_stiffness_factor);
+    set(&mut beam.bending_stiffness_factor, &given.bending_stiffness_factor);
     let stiffness = |beam: &Beam| beam.young_modulus_pa * beam.height_m * beam.width_m;
     let [stiffer, higher] = [stiffness(&beam) / stiffness(other), beam.height_m / other.height_m];
     beam.neutral_axis_m *= higher;
-    at(&given.neutral_axis_m, &mut beam.neutral_axis_m);
-    beam.shear_stiffness_n = beam.shear_stiffness_n.map(|shear| shear * stiffer);
-    let may_be = |profile: &Option<Profile>, value: &mut Option<f64>| {
-        if let Some(profile) = profile {
-            *value = Some(profile.value(x));
-        }
-    };
-    may_be(&given.shear_stiffness_n, &mut beam.shear_stiffness_n);
-    may_be(&given.mass_factor, &mut beam.mass_factor);
-    may_be(&given.reference_axis_m, &mut beam.reference_axis_m);
+    set(&mut beam.neutral_axis_m, &given.neutral_axis_m);
+    let shear = beam.shear_stiffness_n.map(|shear| shear * stiffer);
+    beam.shear_stiffness_n = here(&given.shear_stiffness_n).or(shear);
+    beam.mass_factor = here(&given.mass_factor).or(beam.mass_factor);
+    beam.reference_axis_m = here(&given.reference_axis_m).or(beam.reference_axis_m);
     beam
 }
 
