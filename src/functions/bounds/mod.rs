@@ -10,6 +10,7 @@
 mod enclose;
 mod excites;
 mod interval;
+mod memo;
 mod period;
 mod profile;
 mod search;
@@ -23,6 +24,7 @@ use super::signals::Signal;
 pub use excites::{Excitation, NEAR};
 use interval::Bounded;
 pub use interval::{Interval, JetSpan};
+use memo::Memo;
 use search::{IntervalSearch, overflows, reached, sizes};
 pub use stretches::{TimeStretch, merged};
 pub use variation::Variation;
@@ -33,6 +35,13 @@ const PLACES: f64 = 32.0;
 const MOST_PLACES: f64 = 65_536.0;
 /// Golden ratio: multiples of it modulo 1 are evenly distributed and never repeat.
 const GOLDEN: f64 = 0.618_033_988_749_894_9;
+
+thread_local! {
+    static LARGEST: Memo<SignalSizes> = const { Memo::new() };
+    static REACHED: Memo<SignalSizes> = const { Memo::new() };
+    static IMPULSE: Memo<f64> = const { Memo::new() };
+    static EXCITATION: Memo<Excitation> = const { Memo::new() };
+}
 
 /// Largest magnitudes of a signal over the run.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -76,6 +85,10 @@ impl Signal {
 
     /// Largest magnitudes until `end` [s].
     pub fn largest(&self, end: f64) -> SignalSizes {
+        memo::found(&LARGEST, self, [end, 0.0], || self.search_largest(end))
+    }
+
+    fn search_largest(&self, end: f64) -> SignalSizes {
         let to = self.repeats_within(0.0, end);
         let (mut all, limited) = sizes(&IntervalSearch::new(self, 0.0, to));
         if limited {
@@ -99,15 +112,17 @@ impl Signal {
 
     /// Magnitudes that the signal reaches until `end` [s]: lower bounds of those of [`Self::largest`].
     pub fn reaches(&self, end: f64) -> SignalSizes {
-        let to = self.repeats_within(0.0, end);
-        let [value, rate, acceleration, jerk] = reached(&IntervalSearch::new(self, 0.0, to));
-        SignalSizes {
-            value,
-            rate,
-            acceleration,
-            jerk,
-            limited: false,
-        }
+        memo::found(&REACHED, self, [end, 0.0], || {
+            let to = self.repeats_within(0.0, end);
+            let [value, rate, acceleration, jerk] = reached(&IntervalSearch::new(self, 0.0, to));
+            SignalSizes {
+                value,
+                rate,
+                acceleration,
+                jerk,
+                limited: false,
+            }
+        })
     }
 
     /// Largest jumps of value, rate, acceleration and jerk until `end` [s]: at the start from rest at the value `held`,
@@ -131,7 +146,9 @@ impl Signal {
 
     /// Excitation of oscillators until `end` [s], from rest at the value `held`.
     pub fn excitation(&self, end: f64, held: f64) -> Excitation {
-        Excitation::from_signal(self, end, held)
+        memo::found(&EXCITATION, self, [end, held], || {
+            Excitation::from_signal(self, end, held)
+        })
     }
 
     /// Highest frequency of its sines [Hz]; frequencies of factors add.
@@ -143,13 +160,13 @@ impl Signal {
 
     /// `∫ |s| dt` until `end` [s], an upper bound; sines count with their amplitude.
     pub fn impulse(&self, end: f64) -> f64 {
-        let tones = tones::Tone::all(self).into_iter();
-        tones
-            .map(|tone| match tone.envelope.0.as_slice() {
-                [] => tone.gain.abs() * end,
-                _ => tone.gain.abs() * Variation::amount(&tone.envelope, end),
-            })
-            .sum()
+        let of = |tone: tones::Tone| match tone.envelope.0.as_slice() {
+            [] => tone.gain.abs() * end,
+            _ => tone.gain.abs() * Variation::amount(&tone.envelope, end),
+        };
+        memo::found(&IMPULSE, self, [end, 0.0], || {
+            tones::Tone::all(self).into_iter().map(of).sum()
+        })
     }
 
     /// Upper bound of `|∫ s dt|` from 0 to any instant until `end` [s]: for each tone `(2 |E| + ∫ |E'| dt)/W`, or its

@@ -58,9 +58,21 @@ pub fn differences(run: &Figures, companion: &Figures) -> Figures {
         let apart = |figure: &str| Some((own.get(figure)? - other.get(figure)?).abs()).filter(|e| e.is_finite());
         let of = |figure: &String| Some((figure.clone(), apart(unsigned(figure))?));
         let mut errors: BTreeMap<String, f64> = own.keys().filter_map(of).collect();
-        let largest = largest_error(&errors).unwrap_or(0.0);
-        for (_, error) in errors.iter_mut().filter(|(figure, _)| has_unit_of_quantity(figure)) {
-            *error = error.max(SHARED * largest);
+        // efficiencies of the run and of the window have unlike denominators
+        let size = |figure: &str| match name.as_str() {
+            "efficiency" => own
+                .get(figure)
+                .map(|value| value.abs())
+                .filter(|size| *size > 0.0)
+                .unwrap_or(1.0),
+            _ => 1.0,
+        };
+        let in_sizes = errors
+            .iter()
+            .map(|(figure, error)| (figure.clone(), error / size(figure)));
+        let largest = largest_error(&in_sizes.collect()).unwrap_or(0.0);
+        for (figure, error) in errors.iter_mut().filter(|(figure, _)| has_unit_of_quantity(figure)) {
+            *error = error.max(SHARED * largest * size(figure));
         }
         Some((name.clone(), errors))
     };

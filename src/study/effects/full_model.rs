@@ -29,17 +29,33 @@ pub fn full(case: &Case) -> Result<Option<Full>> {
             choices.choice(*effect) == Choice::Auto && !effect.by_name(case.formulation) && !straight(&auto, *effect)
         })
         .collect();
-    for effect in open {
-        let mut more = choices.clone();
-        more.set(effect, Choice::On);
-        let case = with(case, Effects::Chosen(more.clone()));
-        if System::new(&case).is_ok_and(|system| system.model.effects.has(effect)) {
-            choices = more;
+    let all = with_effects(&choices, &open);
+    match has(case, &all, &open) {
+        true => choices = all,
+        false => {
+            for effect in open {
+                let more = with_effects(&choices, &[effect]);
+                if has(case, &more, &[effect]) {
+                    choices = more;
+                }
+            }
         }
     }
     let case = with(case, Effects::Chosen(choices));
     let left_out = more(&auto, &effects(&case)?);
     Ok((!left_out.is_empty()).then_some(Full { case, left_out }))
+}
+
+fn with_effects(choices: &EffectChoices, effects: &[Effect]) -> EffectChoices {
+    let mut choices = choices.clone();
+    effects.iter().for_each(|effect| choices.set(*effect, Choice::On));
+    choices
+}
+
+/// True if the case with these choices can be computed and has the effects.
+fn has(case: &Case, choices: &EffectChoices, effects: &[Effect]) -> bool {
+    let case = with(case, Effects::Chosen(choices.clone()));
+    System::new(&case).is_ok_and(|system| effects.iter().all(|effect| system.model.effects.has(*effect)))
 }
 
 /// Effects of `many` that `few` lacks.
