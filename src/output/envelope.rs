@@ -272,7 +272,7 @@ pub fn each_row(history: HistorySource, mut take: impl FnMut(&Names, RowOrigin, 
 }
 
 /// Rows of a table of numbers. A row ends before its first cell that is not a number.
-struct Rows<'a> {
+pub(super) struct Rows<'a> {
     path: &'a Path,
     reader: csv::Reader<File>,
     record: csv::StringRecord,
@@ -280,7 +280,7 @@ struct Rows<'a> {
 }
 
 impl Rows<'_> {
-    fn next(&mut self) -> Result<Option<&[f64]>> {
+    pub(super) fn next(&mut self) -> Result<Option<&[f64]>> {
         let read = self.reader.read_record(&mut self.record);
         if !read.map_err(|e| fault("read", self.path, io::Error::from(e)))? {
             return Ok(None);
@@ -292,7 +292,8 @@ impl Rows<'_> {
     }
 }
 
-fn table(path: &Path) -> Result<(Vec<(String, String)>, Rows<'_>)> {
+/// Names and units of the columns of a table, and its rows.
+pub(super) fn table(path: &Path) -> Result<(Vec<(String, String)>, Rows<'_>)> {
     let failed = |e: csv::Error| fault("read", path, io::Error::from(e));
     let file = open(path).map_err(|e| fault("read", path, e))?;
     let mut reader = csv::ReaderBuilder::new().flexible(true).from_reader(file);
