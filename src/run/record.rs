@@ -135,6 +135,14 @@ impl ThinnedRows {
         }
     }
 
+    /// Rows that are thinned already.
+    pub fn from_rows(columns: &[HistoryColumn], rows: Vec<Vec<f64>>) -> Self {
+        Self {
+            rows,
+            ..Self::new(columns)
+        }
+    }
+
     /// Adds a row.
     pub fn push(&mut self, row: &[f64]) {
         if self.count.is_multiple_of(self.stride) && self.rows.len() == Self::MOST {

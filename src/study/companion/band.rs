@@ -55,7 +55,8 @@ impl ErrorBand {
             let Some(there) = companion.columns().iter().position(|one| one.name == column.name) else {
                 continue;
             };
-            if Observable::named(&column.name).is_some_and(|one| one.group() == Group::Open) {
+            let open = Observable::named(&column.name).is_some_and(|one| one.group() == Group::Open);
+            if open || others.iter().all(|row| row[there].is_nan()) {
                 continue;
             }
             let apart = own.iter().zip(&others).map(|(a, b)| (a[k] - b[there]).abs());
