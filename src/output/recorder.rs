@@ -173,18 +173,13 @@ impl FolderRecorder {
         let mut files = open.close()?;
         files.arrays.flush()?;
         let arrays = &files.arrays;
-        let band = self
-            .compared
-            .band(summary, self.labels.frequency_hz)
-            .filter(|_| !self.lean);
-        let errors = band
-            .as_ref()
-            .map(|band| error_band::write(self.folder.dir(), band))
-            .transpose()?;
-        let tables = [Some(files.history), files.envelope, files.sensitivities, errors];
+        let band = self.compared.band(summary, self.labels.frequency_hz);
+        let errors = band.iter().map(|band| error_band::write(self.folder.dir(), band));
+        let errors = errors.collect::<Result<Vec<_>>>()?;
+        let tables = [Some(files.history), files.envelope, files.sensitivities];
         // a lean run that has finished removes them again
         let stay = !self.lean || summary.status != Status::Finished;
-        let mut tables: Vec<_> = tables.into_iter().flatten().filter(|_| stay).collect();
+        let mut tables: Vec<_> = tables.into_iter().flatten().chain(errors).filter(|_| stay).collect();
         tables.iter_mut().try_for_each(HistoryWriter::flush)?;
         let tables_crc32: BTreeMap<_, _> = tables.iter().map(HistoryWriter::checksum).collect();
         let checked = Summary {
@@ -360,7 +355,7 @@ impl Recorder for FolderRecorder {
     }
 
     fn companion(&mut self, rows: &ThinnedRows) -> Result<()> {
-        self.compared.companion = Some(rows.clone());
+        self.compared.companion = (!self.lean).then(|| rows.clone());
         Ok(())
     }
 
