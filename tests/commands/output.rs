@@ -11,6 +11,7 @@ use slcbeam::output::recorder::Finished;
 use slcbeam::output::{FolderRecorder, Labels, ResultFolder, folder, pictures, plot, report, summary};
 use slcbeam::run::record::{Control, Header, HistoryColumn, Progress, RecordedAxis, RecordedField, Recorder};
 use slcbeam::run::summary::{Quantity, Status, Summary};
+use slcbeam::study::companion::band::ErrorBand;
 
 const FREQUENCY: f64 = 20.0;
 const LENGTH: f64 = 0.1;
