@@ -55,7 +55,7 @@ pub fn over_time(case: &str, history: &Envelope, band: &ErrorBand) -> Vec<NamedS
             name: name.clone(),
             unit: unit.clone(),
             points: history.points(k),
-            widths: band.of(name).unwrap_or_default(),
+            widths: band.column_widths(name).unwrap_or_default(),
         };
         if plot::history::belongs(one) {
             shown.curves.push(curve());

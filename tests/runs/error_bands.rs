@@ -48,7 +48,7 @@ fn covered(name: &str, sets: &[&str], finer: &[&str]) -> f64 {
         let (Some(values), Some(right)) = (own.column(column), exact.column(column)) else {
             continue;
         };
-        let widths = band.of(column).expect("a band of each column");
+        let widths = band.column_widths(column).expect("a band of each column");
         let (_, last) = widths.last().copied().expect("an end");
         let bar = summary.error(figure, "final").expect("a bar");
         assert!(last >= bar, "{name}: {column} ends with {last:e}, bar {bar:e}");
@@ -122,7 +122,7 @@ fn bands_are_bounded_and_follow_the_recording() {
         band.rows.len()
     );
     assert_eq!(band.rows.last().map(|row| row[0]), memory.rows.last().map(|row| row[0]));
-    assert!(band.of("energy_residual").is_none() && band.of("kinetic_energy").is_some());
+    assert!(band.column_widths("energy_residual").is_none() && band.column_widths("kinetic_energy").is_some());
     let mut case = shipped("dry-cantilever", &["/time/end_s=0.02", "/time/window_s=0.005"]);
     case.time.history = Thinning::Window;
     let (memory, _, band) = banded(&case);

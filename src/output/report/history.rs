@@ -96,7 +96,7 @@ impl ReportHistory {
             all.insert("about".into(), one.map_or("", Observable::about).into());
             all.insert("usual".into(), one.is_some_and(usual).into());
             all.insert("values".into(), base64::numbers(values.iter().copied()));
-            if let Some(widths) = band.of(name) {
+            if let Some(widths) = band.column_widths(name) {
                 all.insert(
                     "widths".into(),
                     base64::numbers(widths.into_iter().map(|(_, width)| width)),

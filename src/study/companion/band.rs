@@ -73,7 +73,7 @@ impl ErrorBand {
     }
 
     /// Half widths of a column over time; `None` if it has no band.
-    pub fn of(&self, column: &str) -> Option<Vec<(f64, f64)>> {
+    pub fn column_widths(&self, column: &str) -> Option<Vec<(f64, f64)>> {
         let k = self.names.iter().skip(1).position(|(name, _)| name == column)? + 1;
         let all = self.rows.iter().filter(|row| row.len() > k);
         Some(all.map(|row| (row[0], row[k])).collect())
