@@ -289,5 +289,5 @@ fn cycles_leave_no_effect_out() {
         let found = full_of(&case, &scene::whole).unwrap();
         assert!(found.is_none(), "{}: {:?}", case.name, found.map(|full| full.left_out));
     }
-    assert!(left_out > 10, "{left_out} cases leave an effect out");
+    assert!(left_out >= 5, "{left_out} cases leave an effect out");
 }
