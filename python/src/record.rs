@@ -1,7 +1,7 @@
 //! Rows and fields as flat arrays, which numpy takes over without a copy.
 
 use slcbeam::error::Result;
-use slcbeam::run::record::{Control, Header, Progress, Recorder};
+use slcbeam::run::record::{Control, Header, Progress, Recorder, ThinnedRows};
 
 use crate::watch::Watch;
 
@@ -18,6 +18,8 @@ pub struct Arrays {
     pub times: Vec<f64>,
     /// Fields over times and places.
     pub fields: Vec<Vec<f64>>,
+    /// The same columns of the companion at some of the output times; NaN where it lacks one.
+    pub companion: Vec<f64>,
 }
 
 /// Keeps a run in memory.
@@ -63,6 +65,14 @@ impl Recorder for Keeper<'_> {
         for (kept, array) in self.arrays.fields.iter_mut().zip(arrays) {
             kept.extend_from_slice(array);
         }
+        Ok(())
+    }
+    fn companion(&mut self, rows: &ThinnedRows) -> Result<()> {
+        let own = self.header.iter().flat_map(|header| &header.columns);
+        let place = |name: &str| rows.columns().iter().position(|column| column.name == name);
+        let places: Vec<Option<usize>> = own.map(|column| place(&column.name)).collect();
+        let values = |row: &[f64]| -> Vec<f64> { places.iter().map(|k| k.map_or(f64::NAN, |k| row[k])).collect() };
+        self.arrays.companion = rows.rows().flat_map(values).collect();
         Ok(())
     }
     fn progress(&mut self, progress: &Progress) -> Result<Control> {

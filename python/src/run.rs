@@ -15,7 +15,7 @@ use slcbeam::output::recorder::FolderRecorder;
 use slcbeam::output::{report, summary};
 use slcbeam::run::dynamics::Outcome;
 use slcbeam::run::observe::Observer;
-use slcbeam::run::record::{Control, Header, Progress, Recorder};
+use slcbeam::run::record::{Control, Header, Progress, Recorder, ThinnedRows};
 use slcbeam::run::summary::{Status, Summary};
 use slcbeam::study::companion::{self, Accurate};
 use slcbeam::study::target::effects::Annotate;
@@ -179,6 +179,7 @@ fn table<'py>(py: Python<'py>, flat: Vec<f64>, columns: usize) -> PyResult<Bound
 fn arrays<'py>(py: Python<'py>, header: &Header, arrays: Arrays) -> PyResult<Bound<'py, PyDict>> {
     let all = PyDict::new(py);
     all.set_item("history", table(py, arrays.history, header.columns.len())?)?;
+    all.set_item("companion", table(py, arrays.companion, header.columns.len())?)?;
     all.set_item("envelope", table(py, arrays.envelope, header.envelope.len())?)?;
     all.set_item(
         "sensitivities",
@@ -198,6 +199,8 @@ fn arrays<'py>(py: Python<'py>, header: &Header, arrays: Arrays) -> PyResult<Bou
 struct Given<'py> {
     #[pyo3(item)]
     history: PyReadonlyArray2<'py, f64>,
+    #[pyo3(item)]
+    companion: PyReadonlyArray2<'py, f64>,
     #[pyo3(item)]
     envelope: PyReadonlyArray2<'py, f64>,
     #[pyo3(item)]
@@ -245,6 +248,15 @@ impl Recorded {
                     .map(|(flat, n)| &flat[k * n..(k + 1) * n])
                     .collect();
                 done = done.and_then(|()| recorder.fields(*t, &now));
+            }
+            let mut companion = vec![];
+            done = done.and(rows(&given.companion, |row| {
+                companion.push(row.to_vec());
+                Ok(())
+            })?);
+            if !companion.is_empty() {
+                let companion = ThinnedRows::from_rows(&self.header.columns, companion);
+                done = done.and_then(|()| recorder.companion(&companion));
             }
             Ok(done)
         };

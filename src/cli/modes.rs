@@ -84,7 +84,7 @@ pub fn modes(asked: &ModesArguments) -> Result<ExitCode> {
     }
     let parameters = Parameter::all(case, &asked.sensitivity)?;
     let (mut found, wider) = sort::of_sort(about, &plan, kind)?;
-    modes::compare_meshes(case, asked.at, &wider, &mut found);
+    refine::meshes::judge_modes(case, asked.at, &wider, &mut found)?;
     sort::arrange(&mut found.modes, kind, &plan);
     let sensitivities = modes::differentiate(case, asked.at, &found.about, &found.modes, &parameters)?;
     let report = Report {

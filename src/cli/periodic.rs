@@ -114,8 +114,7 @@ fn one(asked: &PeriodicArguments) -> Result<ExitCode> {
         let mut here = refine::numbers::of_summary(&case, &outcome.summary)?;
         here.extend(refine::numbers::of_stability(&found));
         let mut of = |case: &Case| refine::numbers::of_cycle_and_multipliers(case, asked.periods, COUNT, &stop);
-        let mut of_figures = |case: &Case| refine::numbers::of_cycle(case, asked.periods, &stop);
-        Some(refine::meshes::judge(&case, &here, &mut of)?.with_effects(&case, &here, &mut of_figures)?)
+        Some(refine::meshes::judge(&case, &here, &mut of)?)
     } else {
         None
     };

@@ -272,15 +272,15 @@ pub fn each_row(history: HistorySource, mut take: impl FnMut(&Names, RowOrigin, 
 }
 
 /// Rows of a table of numbers. A row ends before its first cell that is not a number.
-struct Rows<'a> {
+pub(super) struct TableRows<'a> {
     path: &'a Path,
     reader: csv::Reader<File>,
     record: csv::StringRecord,
     row: Vec<f64>,
 }
 
-impl Rows<'_> {
-    fn next(&mut self) -> Result<Option<&[f64]>> {
+impl TableRows<'_> {
+    pub(super) fn next(&mut self) -> Result<Option<&[f64]>> {
         let read = self.reader.read_record(&mut self.record);
         if !read.map_err(|e| fault("read", self.path, io::Error::from(e)))? {
             return Ok(None);
@@ -292,12 +292,13 @@ impl Rows<'_> {
     }
 }
 
-fn table(path: &Path) -> Result<(Vec<(String, String)>, Rows<'_>)> {
+/// Names and units of the columns of a table, and its rows.
+pub(super) fn table(path: &Path) -> Result<(Vec<(String, String)>, TableRows<'_>)> {
     let failed = |e: csv::Error| fault("read", path, io::Error::from(e));
     let file = open(path).map_err(|e| fault("read", path, e))?;
     let mut reader = csv::ReaderBuilder::new().flexible(true).from_reader(file);
     let names = reader.headers().map_err(failed)?.iter().map(split_name).collect();
-    let rows = Rows {
+    let rows = TableRows {
         path,
         reader,
         record: csv::StringRecord::new(),

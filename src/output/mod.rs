@@ -7,6 +7,7 @@
 //! journal              rows with checksums, each on the disk as soon as it is computed
 //! history              history.csv, row by row
 //! envelope             a history of any length, read back in bounded memory
+//! error_band           errors.csv, error bands of the history
 //! arrays               fields.npz, streamed through raw files
 //! downsampled_history  writes the files that grow with a run, in a thread
 //! npz                  reads arrays from such a file and verifies them
@@ -50,6 +51,7 @@ pub mod downsampled_history;
 pub mod effects;
 pub mod envelope;
 pub mod equilibrium;
+pub mod error_band;
 pub mod errors;
 pub mod evaluations;
 pub mod export;

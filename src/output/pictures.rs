@@ -7,6 +7,7 @@ use crate::case::{Case, CaseText};
 use crate::discrete::quantities::{BeamField, FieldAxis, Observable};
 use crate::error::Result;
 use crate::model::characteristic;
+use crate::study::companion::band::ErrorBand;
 
 /// Number of curves in a picture over space.
 const CURVES: usize = 24;
@@ -38,8 +39,8 @@ impl Labels {
 /// Name of a picture, and its SVG.
 pub type NamedSvg = (&'static str, String);
 
-/// `history.svg` and `energy.svg`, if their columns exist.
-pub fn over_time(case: &str, history: &Envelope) -> Vec<NamedSvg> {
+/// `history.svg` and `energy.svg`, if their columns exist, with error bands.
+pub fn over_time(case: &str, history: &Envelope, band: &ErrorBand) -> Vec<NamedSvg> {
     let mut shown = HistoryPlot {
         case: case.to_string(),
         ..HistoryPlot::default()
@@ -54,6 +55,7 @@ pub fn over_time(case: &str, history: &Envelope) -> Vec<NamedSvg> {
             name: name.clone(),
             unit: unit.clone(),
             points: history.points(k),
+            widths: band.column_widths(name).unwrap_or_default(),
         };
         if plot::history::belongs(one) {
             shown.curves.push(curve());

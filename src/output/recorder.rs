@@ -10,9 +10,10 @@ use super::arrays::ArraysWriter;
 use super::checkpoint::{self, SavedCheckpoint};
 use super::downsampled_history::{BackgroundWriter, GrowingFiles, SyncedPart};
 use super::envelope::{Envelope, HistoryInMemory, HistorySource};
+use super::error_band::{self, ComparedHistories};
 use super::folder::{
-    AtomicFile, CHECKPOINT, CHECKPOINT_BEFORE, ENVELOPE, FIELDS, HISTORY, PICTURES, RAW_FIELDS, REPORT, ResultFolder,
-    SENSITIVITIES, SUMMARY, Wait, at_once,
+    AtomicFile, CHECKPOINT, CHECKPOINT_BEFORE, ENVELOPE, ERRORS, FIELDS, HISTORY, PICTURES, RAW_FIELDS, REPORT,
+    ResultFolder, SENSITIVITIES, SUMMARY, Wait, at_once,
 };
 use super::history::{HistoryWriter, headings};
 use super::pictures::{self, Labels, NamedSvg, STRETCHES};
@@ -22,7 +23,7 @@ use crate::error::Result;
 use crate::integrate::halt;
 use crate::numerics::threads::{StartedTask, begin};
 use crate::run::checkpoint::Checkpoint;
-use crate::run::record::{Control, Header, Progress, Recorder};
+use crate::run::record::{Control, Header, Progress, Recorder, ThinnedRows};
 use crate::run::summary::{Status, Summary};
 use crate::run::wall_time::Stopwatch;
 
@@ -39,6 +40,7 @@ pub struct FolderRecorder {
     hook: Hook,
     lean: bool,
     open: Option<BackgroundWriter>,
+    compared: ComparedHistories,
 }
 
 impl FolderRecorder {
@@ -50,6 +52,7 @@ impl FolderRecorder {
             hook,
             lean: false,
             open: None,
+            compared: ComparedHistories::default(),
         }
     }
 
@@ -82,6 +85,7 @@ impl FolderRecorder {
         folder.remove(SUMMARY)?;
         folder.remove_exports()?;
         let history = HistoryWriter::reopen(&history, at.history)?;
+        let compared = ComparedHistories::read(folder.dir(), header)?;
         let arrays = ArraysWriter::reopen(&raw, header, &at.fields)?;
         let [envelope, sensitivities] = besides.map(|(name, mark)| {
             let path = folder.path(name);
@@ -96,6 +100,7 @@ impl FolderRecorder {
         };
         Ok(Self {
             open: Some(BackgroundWriter::new(files)?),
+            compared,
             ..Self::new(folder, labels, hook)
         })
     }
@@ -138,7 +143,7 @@ impl FolderRecorder {
         if self.lean {
             // those of a run that was resumed
             self.folder.remove_all(&PICTURES)?;
-            self.folder.remove(REPORT)?;
+            self.folder.remove_all(&[REPORT, ERRORS])?;
         }
         for pictures in drawn {
             for (name, picture) in pictures? {
@@ -168,10 +173,13 @@ impl FolderRecorder {
         let mut files = open.close()?;
         files.arrays.flush()?;
         let arrays = &files.arrays;
+        let band = self.compared.band(summary, self.labels.frequency_hz);
+        let errors = band.iter().map(|band| error_band::write(self.folder.dir(), band));
+        let errors = errors.collect::<Result<Vec<_>>>()?;
         let tables = [Some(files.history), files.envelope, files.sensitivities];
         // a lean run that has finished removes them again
         let stay = !self.lean || summary.status != Status::Finished;
-        let mut tables: Vec<_> = tables.into_iter().flatten().filter(|_| stay).collect();
+        let mut tables: Vec<_> = tables.into_iter().flatten().chain(errors).filter(|_| stay).collect();
         tables.iter_mut().try_for_each(HistoryWriter::flush)?;
         let tables_crc32: BTreeMap<_, _> = tables.iter().map(HistoryWriter::checksum).collect();
         let checked = Summary {
@@ -185,7 +193,7 @@ impl FolderRecorder {
         let frequency = self.labels.frequency_hz;
         let over_time = || {
             let rows = Envelope::read(HistorySource::new(dir, files.kept.as_ref()), STRETCHES)?;
-            Ok(pictures::over_time(case, &rows))
+            Ok(pictures::over_time(case, &rows, &band.unwrap_or_default()))
         };
         let drawn = thread::scope(|scope| {
             let drawing = match self.lean {
@@ -342,10 +350,17 @@ impl Recorder for FolderRecorder {
             sensitivities: table(SENSITIVITIES, &header.sensitivities)?,
         };
         self.open = Some(BackgroundWriter::new(files)?);
+        self.compared = ComparedHistories::new(header);
+        Ok(())
+    }
+
+    fn companion(&mut self, rows: &ThinnedRows) -> Result<()> {
+        self.compared.companion = (!self.lean).then(|| rows.clone());
         Ok(())
     }
 
     fn history(&mut self, row: &[f64]) -> Result<()> {
+        self.compared.run.push(row);
         self.open.as_mut().map_or(Ok(()), |open| open.history(row))
     }
 

@@ -50,6 +50,12 @@ pub struct ModesRecord {
     pub sensitivities: Ordered<ModeDerivatives>,
     /// Work.
     pub solver: SearchWork,
+    /// Effects that the modes leave out and that errors include.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub left_out: Vec<String>,
+    /// Reason why errors exclude effects that are left out.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub excluded: Option<String>,
     /// Warnings.
     pub warnings: Vec<String>,
     /// Estimated errors, if an accuracy was requested.
@@ -94,6 +100,12 @@ pub struct ModeRecord {
     pub mesh_error: Option<f64>,
     /// Relative error of the growth rate by the mesh.
     pub rate_mesh_error: Option<f64>,
+    /// Relative error of the frequency by the effects left out.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub effects_error: Option<f64>,
+    /// Relative error of the growth rate by the effects left out.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub rate_effects_error: Option<f64>,
     /// Uncertainty bands of frequency, damping ratio and growth rate, by these keys.
     #[serde(default, skip_serializing_if = "Bands::is_empty")]
     pub bands: Bands,

@@ -104,6 +104,74 @@ pub trait Recorder {
     fn checkpoint(&mut self, _: &Checkpoint) -> Result<()> {
         Ok(())
     }
+    /// Receives the history of the companion of a run that has finished.
+    fn companion(&mut self, _: &ThinnedRows) -> Result<()> {
+        Ok(())
+    }
+}
+
+/// Rows of a history, thinned by their numbers alone, so that two runs with equal output times keep the same instants.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct ThinnedRows {
+    columns: Vec<HistoryColumn>,
+    rows: Vec<Vec<f64>>,
+    last: Vec<f64>,
+    count: u64,
+    stride: u64,
+}
+
+impl ThinnedRows {
+    /// Largest number of rows, without the last one.
+    pub const MOST: usize = 1200;
+    /// One row of so many stays: outputs per period of a drive are rarely a multiple of nine, so that all phases of a drive remain.
+    const THINNED: u64 = 3;
+
+    /// No rows of these columns, the first of which is time.
+    pub fn new(columns: &[HistoryColumn]) -> Self {
+        Self {
+            columns: columns.to_vec(),
+            stride: 1,
+            ..Self::default()
+        }
+    }
+
+    /// Rows that are thinned already.
+    pub fn from_rows(columns: &[HistoryColumn], rows: Vec<Vec<f64>>) -> Self {
+        Self {
+            rows,
+            ..Self::new(columns)
+        }
+    }
+
+    /// Adds a row.
+    pub fn push(&mut self, row: &[f64]) {
+        if self.count.is_multiple_of(self.stride) && self.rows.len() == Self::MOST {
+            let mut number = 0;
+            self.rows.retain(|_| {
+                number += 1;
+                (number - 1_u64).is_multiple_of(Self::THINNED)
+            });
+            self.stride *= Self::THINNED;
+        }
+        if self.count.is_multiple_of(self.stride) {
+            self.rows.push(row.to_vec());
+        }
+        self.last.clear();
+        self.last.extend_from_slice(row);
+        self.count += 1;
+    }
+
+    /// The columns.
+    pub fn columns(&self) -> &[HistoryColumn] {
+        &self.columns
+    }
+
+    /// Rows that are kept, the last one included.
+    pub fn rows(&self) -> impl Iterator<Item = &[f64]> {
+        let ends = self.count > 0 && !(self.count - 1).is_multiple_of(self.stride);
+        let last = ends.then_some(&self.last);
+        self.rows.iter().chain(last).map(Vec::as_slice)
+    }
 }
 
 /// Recorder that stores nothing and only decides if the run continues.
@@ -124,6 +192,31 @@ impl<F: FnMut(&Progress) -> Control> Recorder for Unrecorded<F> {
     }
 }
 
+/// Recorder that keeps thinned rows of the history and decides if the run continues.
+pub struct ThinnedRecorder<F: FnMut(&Progress) -> Control> {
+    /// Decision.
+    pub hook: F,
+    /// History.
+    pub rows: ThinnedRows,
+}
+
+impl<F: FnMut(&Progress) -> Control> Recorder for ThinnedRecorder<F> {
+    fn begin(&mut self, header: &Header) -> Result<()> {
+        self.rows = ThinnedRows::new(&header.columns);
+        Ok(())
+    }
+    fn history(&mut self, row: &[f64]) -> Result<()> {
+        self.rows.push(row);
+        Ok(())
+    }
+    fn fields(&mut self, _: f64, _: &[&[f64]]) -> Result<()> {
+        Ok(())
+    }
+    fn progress(&mut self, progress: &Progress) -> Result<Control> {
+        Ok((self.hook)(progress))
+    }
+}
+
 /// Recorder that stores everything in memory, for tests and studies.
 #[derive(Clone, Debug, Default)]
 pub struct Memory {
@@ -139,6 +232,8 @@ pub struct Memory {
     pub fields: Vec<Vec<Vec<f64>>>,
     /// Checkpoints.
     pub checkpoints: Vec<Checkpoint>,
+    /// History of the companion.
+    pub companion: Option<ThinnedRows>,
 }
 
 impl Memory {
@@ -192,6 +287,10 @@ impl Recorder for Memory {
     }
     fn checkpoint(&mut self, checkpoint: &Checkpoint) -> Result<()> {
         self.checkpoints.push(checkpoint.clone());
+        Ok(())
+    }
+    fn companion(&mut self, rows: &ThinnedRows) -> Result<()> {
+        self.companion = Some(rows.clone());
         Ok(())
     }
 }

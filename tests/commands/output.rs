@@ -11,6 +11,7 @@ use slcbeam::output::recorder::Finished;
 use slcbeam::output::{FolderRecorder, Labels, ResultFolder, folder, pictures, plot, report, summary};
 use slcbeam::run::record::{Control, Header, HistoryColumn, Progress, RecordedAxis, RecordedField, Recorder};
 use slcbeam::run::summary::{Quantity, Status, Summary};
+use slcbeam::study::companion::band::ErrorBand;
 
 const FREQUENCY: f64 = 20.0;
 const LENGTH: f64 = 0.1;
@@ -280,7 +281,7 @@ fn what_was_kept_in_memory_is_what_files_say() {
     report::write(out, None).expect("the same page");
     assert!(page == read(out, "report.html"), "the page of the folder is another");
     let rows = Envelope::read(HistorySource::Folder(out), pictures::STRETCHES).expect("rows");
-    let drawn = pictures::over_time("wiring-3 <&>", &rows);
+    let drawn = pictures::over_time("wiring-3 <&>", &rows, &ErrorBand::default());
     assert_eq!(drawn.len(), 2);
     for (name, picture) in drawn {
         assert!(picture == read(out, name), "{name} of the folder is another");

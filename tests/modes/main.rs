@@ -3,6 +3,7 @@
 mod cli;
 mod common;
 mod fourth;
+mod left_out;
 mod physics;
 mod response;
 mod selection;

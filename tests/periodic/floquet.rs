@@ -10,7 +10,8 @@ use slcbeam::error::Error;
 use slcbeam::model::characteristic::{MATHIEU_COUPLING, mathieu_growth};
 use slcbeam::run::floquet::{self, CycleStability, Floquet, shape::EnergyPart};
 use slcbeam::run::modes;
-use slcbeam::run::periodic::{PeriodicScene, shoot};
+use slcbeam::run::periodic::{PeriodicScene, scene, shoot};
+use slcbeam::study::effects::full_model::{full, full_of};
 
 fn case_of(value: &Value) -> Case {
     case::parse(&value.to_string(), Path::new("test.json"), Path::new(""), &[]).unwrap()
@@ -273,4 +274,20 @@ fn a_mode_of_a_bent_beam_keeps_its_name() {
         // near a mode of 12.4 Hz, within the shift by a drive of this strength
         assert!((first.frequency_hz - 12.4).abs() < 0.4, "{frequency}: {first:?}");
     }
+}
+
+/// Goal: cycles and multipliers have no error by effects left out, since their model has every effect that a run leaves out.
+#[test]
+fn cycles_leave_no_effect_out() {
+    let mut left_out = 0;
+    for entry in std::fs::read_dir("cases").unwrap().map(|entry| entry.unwrap().path()) {
+        let is_case = entry.extension().is_some_and(|x| x == "json") && !entry.ends_with("schema.json");
+        let Some(case) = is_case.then(|| case::load(&entry, &[]).ok()).flatten() else {
+            continue;
+        };
+        left_out += usize::from(full(&case).unwrap().is_some());
+        let found = full_of(&case, &scene::whole).unwrap();
+        assert!(found.is_none(), "{}: {:?}", case.name, found.map(|full| full.left_out));
+    }
+    assert!(left_out >= 5, "{left_out} cases leave an effect out");
 }

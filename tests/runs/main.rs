@@ -1,6 +1,7 @@
 //! Monitoring of a run: its warnings, error bars and extrema, apart from its results.
 
 mod energies;
+mod error_bands;
 mod error_bars;
 mod probes;
 #[path = "../common/scene.rs"]

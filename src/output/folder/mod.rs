@@ -7,21 +7,20 @@ mod stored_case;
 mod unsynced_files;
 
 use std::fs;
-use std::io::{self, Read as _, Write as _};
+use std::io::{self, Write as _};
 use std::path::{Path, PathBuf};
 
 use super::kind::FolderKind;
 use super::uncertainty::UNCERTAINTY;
 use crate::case::{CaseText, is_table};
 use crate::error::{Error, Result};
-use crate::results;
 pub(crate) use atomic_file::{
     AtomicFile, Wait, at_once, create, damaged, entries, name_of, open, put_whole, result, text_of, unlink,
 };
 pub use atomic_file::{replace, replace_alike};
 use lock::Lock;
-use origin::ORIGIN;
 pub use origin::other_origin;
+use origin::{ORIGIN, foreign};
 
 /// The resolved case.
 pub const CASE: &str = "case.json";
@@ -33,6 +32,8 @@ pub const HISTORY: &str = "history.csv";
 pub const ENVELOPE: &str = "envelope.csv";
 /// Derivatives of the history's columns, one row per output time.
 pub const SENSITIVITIES: &str = "sensitivities.csv";
+/// Half widths of the error bands of the history's columns.
+pub const ERRORS: &str = "errors.csv";
 /// Arrays over time and space.
 pub const FIELDS: &str = "fields.npz";
 /// Raw arrays during a run.
@@ -52,13 +53,14 @@ pub const PICTURES: [&str; 4] = ["deflection.svg", "pressure.svg", "history.svg"
 /// Prefix of the folders in which candidates are recorded.
 const CANDIDATE: &str = ".next-";
 /// Files of a run. The summary is removed first: without it the others do not count as a finished run.
-pub const RUN_FILES: [&str; 12] = [
+pub const RUN_FILES: [&str; 13] = [
     SUMMARY,
     CHECKPOINT,
     CHECKPOINT_BEFORE,
     FIELDS,
     HISTORY,
     ENVELOPE,
+    ERRORS,
     SENSITIVITIES,
     UNCERTAINTY,
     PICTURES[0],
@@ -371,27 +373,6 @@ fn remove_folder_of(dir: &Path, endings: &[&str]) -> Result<()> {
         return Ok(());
     }
     fs::remove_dir_all(dir).map_err(|e| fault("remove", dir, e))
-}
-
-/// Reason why the identifying file of a kind is foreign; `None` if it belongs to this program. It is then a JSON object with a case or, for
-/// an interrupted run, a history that begins with time.
-fn foreign(dir: &Path, kind: FolderKind) -> Result<Option<String>> {
-    let sign = dir.join(kind.sign());
-    if !sign.exists() {
-        let own = history_begins_with_time(&dir.join(HISTORY));
-        return Ok((!own).then(|| format!("its {HISTORY} was not written by slcbeam")));
-    }
-    let text = text_of(&sign).ok();
-    let own = text.is_some_and(|text| results::is_one(&text));
-    Ok((!own).then(|| format!("its {} was not written by slcbeam", kind.sign())))
-}
-
-fn history_begins_with_time(path: &Path) -> bool {
-    // a run that was killed immediately leaves an empty file
-    let mut begin = vec![];
-    open(path)
-        .and_then(|file| file.take(5).read_to_end(&mut begin))
-        .is_ok_and(|_| begin.is_empty() || begin == b"t [s]")
 }
 
 /// True if a folder has visible files. Hidden files do not count: systems create them everywhere.

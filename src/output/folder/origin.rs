@@ -1,12 +1,15 @@
-//! Case file to which the result in a folder belongs.
+//! Origin of the result in a folder: its case file, and the program that wrote it.
 
 use std::fs;
+use std::io::Read as _;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
 
-use super::{CASE, ResultFolder, text_of};
+use super::{CASE, HISTORY, ResultFolder, open, text_of};
 use crate::case::Case;
 use crate::error::Result;
+use crate::output::kind::FolderKind;
+use crate::results;
 
 /// File with the relative path from the folder to the case file. Both can be moved together.
 pub const ORIGIN: &str = ".slcbeam.case";
@@ -79,4 +82,25 @@ fn shown(dir: &Path, way: &str) -> String {
         return way.to_owned();
     };
     whole.strip_prefix(here).unwrap_or(&whole).display().to_string()
+}
+
+/// Reason why the identifying file of a kind is foreign; `None` if it belongs to this program. It is then a JSON object with a case or, for
+/// an interrupted run, a history that begins with time.
+pub(super) fn foreign(dir: &Path, kind: FolderKind) -> Result<Option<String>> {
+    let sign = dir.join(kind.sign());
+    if !sign.exists() {
+        let own = history_begins_with_time(&dir.join(HISTORY));
+        return Ok((!own).then(|| format!("its {HISTORY} was not written by slcbeam")));
+    }
+    let text = text_of(&sign).ok();
+    let own = text.is_some_and(|text| results::is_one(&text));
+    Ok((!own).then(|| format!("its {} was not written by slcbeam", kind.sign())))
+}
+
+fn history_begins_with_time(path: &Path) -> bool {
+    // a run that was killed immediately leaves an empty file
+    let mut begin = vec![];
+    open(path)
+        .and_then(|file| file.take(5).read_to_end(&mut begin))
+        .is_ok_and(|_| begin.is_empty() || begin == b"t [s]")
 }

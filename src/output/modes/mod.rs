@@ -16,6 +16,7 @@ use super::numbers::{counted, significant};
 use super::plot::canvas::{INK, LineStyle};
 use super::plot::colour::{Colour, PALETTE};
 use super::plot::picture::{Panel, Picture, PictureAxis, PictureSeries};
+use crate::case::schema::Effect;
 use crate::error::{Code, Result};
 use crate::model::passivity::{self, Passivity};
 use crate::results;
@@ -214,6 +215,8 @@ pub fn json(report: &Report) -> String {
             solves: found.solves,
             all_at_once: found.dense,
         },
+        left_out: found.left_out.iter().map(Effect::to_string).collect(),
+        excluded: found.excluded.clone(),
         warnings: report.warnings(),
         accuracy: report.accuracy.cloned(),
     })
@@ -237,6 +240,8 @@ fn mode(mode: &Mode) -> kept::ModeRecord {
         extrapolated_growth_per_s: mode.extrapolated().map(|s| s.re),
         mesh_error: mode.mesh_error(),
         rate_mesh_error: mode.rate_error(),
+        effects_error: mode.effects_error(),
+        rate_effects_error: mode.rate_effects_error(),
         bands: Bands::new(),
     }
 }

@@ -3,6 +3,7 @@
 use std::fmt::Write as _;
 
 use super::{Report, moves};
+use crate::case::schema::Effect;
 use crate::output::columns::{aligned, cells};
 use crate::output::numbers::{counted, percent, quantity, significant};
 use crate::output::records::{self, number};
@@ -11,7 +12,8 @@ use crate::run::modes::{LimitingMode, Mode, TimeBehavior};
 /// Largest number of digits shown.
 const DIGITS: f64 = 6.0;
 
-const HEADINGS: &str = " | mode | moves | frequency | mesh error | damping ratio | growth rate | its mesh error | time constant | undrained | drained";
+const HEADINGS: &str = " | mode | moves | frequency | mesh error | effects error | damping ratio | growth rate | its mesh error | its effects error | \
+                        time constant | undrained | drained";
 
 /// Table of the modes, with a heading above and a legend below.
 pub fn table(report: &Report) -> String {
@@ -33,7 +35,7 @@ pub fn table(report: &Report) -> String {
         found.factorizations,
         found.solves
     );
-    let mut lines = vec![cells::<11>(HEADINGS).map(String::from)];
+    let mut lines = vec![cells::<13>(HEADINGS).map(String::from)];
     let moving = found.modes.iter().enumerate().filter(|(_, mode)| !mode.kind.stays());
     lines.extend(moving.map(|(k, mode)| line(k + 1, mode)));
     // omits columns that are empty for all modes
@@ -70,6 +72,16 @@ pub fn table(report: &Report) -> String {
             "\nmesh error: estimate from {cells} the cells of the beam{bladders}"
         );
     }
+    if !found.left_out.is_empty() {
+        let _ = writeln!(
+            text,
+            "effects error: change with {}",
+            Effect::names(&found.left_out, ", ")
+        );
+    }
+    if let Some(reason) = &found.excluded {
+        let _ = writeln!(text, "{reason}");
+    }
     if found.modes.iter().any(|m| m.undrained.is_some() || m.drained.is_some()) {
         text += "\nundrained: the same shape with every bladder sealed; drained: with networks of one pressure\n";
     }
@@ -105,7 +117,7 @@ fn staying(report: &Report) -> String {
     }
 }
 
-fn line(number: usize, mode: &Mode) -> [String; 11] {
+fn line(number: usize, mode: &Mode) -> [String; 13] {
     let cell = |value: Option<f64>, error: f64, unit: &str| {
         value.map_or(String::new(), |value| quantity(value, unit, digits(value, error)))
     };
@@ -117,6 +129,7 @@ fn line(number: usize, mode: &Mode) -> [String; 11] {
         moves(mode).into(),
         cell(mode.frequency_hz(), mode.error / std::f64::consts::TAU, "Hz"),
         mode.mesh_error().map_or(String::new(), percent),
+        mode.effects_error().map_or(String::new(), percent),
         mode.damping_ratio()
             .map_or(String::new(), |z| significant(z, digits(z, mode.error / size).min(4))),
         if mode.kind.stays() {
@@ -125,6 +138,7 @@ fn line(number: usize, mode: &Mode) -> [String; 11] {
             format!("{} 1/s", significant(mode.s.re, digits(mode.s.re, mode.error)))
         },
         mode.rate_error().map_or(String::new(), percent),
+        mode.rate_effects_error().map_or(String::new(), percent),
         cell(mode.time_s(), mode.error / mode.s.re.powi(2), "s"),
         limit(&mode.undrained),
         limit(&mode.drained),

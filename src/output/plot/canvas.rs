@@ -151,11 +151,18 @@ impl Canvas {
 
     /// A filled polygon.
     pub fn polygon(&mut self, points: &[(f64, f64)], colour: Colour) {
-        let points: Vec<_> = points.iter().map(|&p| fine(p)).collect();
-        self.put(format_args!(
-            "<polygon fill=\"{colour}\" points=\"{}\"/>",
-            listed(&points)
-        ));
+        self.filled(points, format_args!("fill=\"{colour}\""));
+    }
+
+    /// A translucent polygon.
+    pub fn shade(&mut self, points: &[(f64, f64)], colour: Colour) {
+        self.filled(points, format_args!("fill=\"{colour}\" fill-opacity=\"0.22\""));
+    }
+
+    fn filled(&mut self, points: &[(f64, f64)], fill: fmt::Arguments) {
+        let mut points: Vec<_> = points.iter().map(|&p| fine(p)).collect();
+        points.dedup();
+        self.put(format_args!("<polygon {fill} points=\"{}\"/>", listed(&points)));
     }
 
     /// The outline of a rectangle.

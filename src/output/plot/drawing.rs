@@ -38,7 +38,7 @@ impl Picture {
 impl PlacedPanel<'_> {
     fn draw(&self, canvas: &mut Canvas) {
         let (series, bare) = (&self.panel.series, self.panel.bare);
-        let below = |one: &&PictureSeries| matches!(one.kind, SeriesKind::Area(..));
+        let below = |one: &&PictureSeries| matches!(one.kind, SeriesKind::Area(..) | SeriesKind::Shade(..));
         let longest = series.iter().filter_map(|one| match &one.kind {
             SeriesKind::Label(.., text, words) => Some((width_of(text, words.size), words.size)),
             _ => None,
@@ -82,6 +82,7 @@ impl PlacedPanel<'_> {
         match kind {
             SeriesKind::Line(points, stroke) => canvas.line(&placed(points), *stroke),
             SeriesKind::Area(points, colour) => canvas.polygon(&placed(points), *colour),
+            SeriesKind::Shade(points, colour) => canvas.shade(&placed(points), *colour),
             SeriesKind::Marks(points, glyph, colour) => {
                 let within = |p: &(f64, f64)| p.0.is_finite() && p.1.is_finite();
                 let all = placed(points).into_iter().filter(within);
@@ -195,6 +196,12 @@ fn sample(canvas: &mut Canvas, (x, y): (f64, f64), one: &PictureSeries) {
         SeriesKind::Marks(_, glyph, colour) => glyph.draw(canvas, (x + 12.0, y), *colour),
         SeriesKind::Area(_, colour) | SeriesKind::Cell(_, colour) => {
             canvas.rectangle((x + 5.0, y - 5.0), (x + 19.0, y + 5.0), *colour);
+        }
+        SeriesKind::Shade(_, colour) => {
+            canvas.shade(
+                &[(x, y - 5.0), (x + 24.0, y - 5.0), (x + 24.0, y + 5.0), (x, y + 5.0)],
+                *colour,
+            );
         }
         SeriesKind::Line(..) | SeriesKind::Label(..) => {}
     }

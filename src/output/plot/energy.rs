@@ -3,7 +3,7 @@
 use super::canvas::LineStyle;
 use super::colour::PALETTE;
 use super::picture::{Panel, Picture, PictureAxis, PictureSeries};
-use super::{PlottedCurve, times_of};
+use super::{BAND, PlottedCurve, error_bands, times_of};
 use crate::discrete::quantities::{Group, Observable};
 
 /// Entries of the ledger over time.
@@ -15,6 +15,8 @@ pub struct Energy {
     pub curves: Vec<PlottedCurve>,
 }
 
+/// Smallest half range of the axis [J].
+const FLOOR: f64 = 1e-15;
 /// Fraction of the largest entry below which an entry is not drawn.
 const NEGLIGIBLE: f64 = 1e-3;
 
@@ -36,10 +38,11 @@ pub fn draw(data: &Energy) -> Option<String> {
     let lines = entries(data);
     let x = times_of(lines.iter().copied())?;
     let largest = lines.iter().map(|c| c.max_abs()).fold(0.0, f64::max);
+    let colour = |k: usize| PALETTE[k % PALETTE.len()];
     let entry = |(k, curve): (usize, &&PlottedCurve)| {
         let stroke = LineStyle {
             dash: (!is_stored(curve)).then_some((6.0, 3.5)),
-            ..LineStyle::solid(PALETTE[k % PALETTE.len()], 1.5)
+            ..LineStyle::solid(colour(k), 1.5)
         };
         let label = curve.observable().map_or(curve.name.as_str(), |one| one.label());
         PictureSeries::line(curve.points.iter().copied(), stroke).named(label)
@@ -48,8 +51,10 @@ pub fn draw(data: &Energy) -> Option<String> {
         legend_beside: true,
         ..Panel::new((600.0, height), x.clone(), y, series)
     };
-    let y = PictureAxis::new("energy", "J", 7).above(1e-15);
-    let energies = panel(300.0, y, lines.iter().enumerate().map(entry).collect());
+    let y = PictureAxis::new("energy", "J", 7).above(FLOOR);
+    let mut series = error_bands(lines.iter().enumerate().map(|(k, curve)| (*curve, colour(k))), FLOOR);
+    series.extend(lines.iter().enumerate().map(entry));
+    let energies = panel(300.0, y, series);
     let residual = data.curves.iter().find(|c| is_residual(c) && !c.points.is_empty());
     let residual = residual.map(|curve| {
         let over = if largest > 0.0 { largest } else { 1.0 };
@@ -62,7 +67,11 @@ pub fn draw(data: &Energy) -> Option<String> {
             vec![line.named("what does not close,\nover the largest energy")],
         )
     });
-    let about = "stored energies (solid), cumulative works and losses (dashed)";
+    let bands = match lines.iter().any(|curve| !curve.widths.is_empty()) {
+        true => format!("; bands: {BAND}"),
+        false => String::new(),
+    };
+    let about = format!("stored energies (solid), cumulative works and losses (dashed){bands}");
     Picture::stacked(
         format!("{} · energy", data.case),
         about,

@@ -3,7 +3,7 @@
 use super::canvas::LineStyle;
 use super::colour::PALETTE;
 use super::picture::{Panel, Picture, PictureAxis, PictureSeries};
-use super::{PlottedCurve, times_of};
+use super::{BAND, PlottedCurve, error_bands, times_of};
 use crate::discrete::quantities::{Group, Observable};
 
 /// Curves over time.
@@ -54,19 +54,17 @@ pub fn draw(data: &HistoryPlot) -> Option<String> {
         };
         let unit = &*curves[0].unit;
         let y = PictureAxis::new(name(curves), unit, 4).above(floor(unit));
-        Panel::new(
-            (640.0, 112.0),
-            x.clone(),
-            y,
-            curves.iter().enumerate().map(line).collect(),
-        )
+        let coloured = curves.iter().enumerate().map(|(c, curve)| (*curve, colour(c)));
+        let mut series = error_bands(coloured, floor(unit));
+        series.extend(curves.iter().enumerate().map(line));
+        Panel::new((640.0, 112.0), x.clone(), y, series)
     });
-    Picture::stacked(
-        format!("{} · history", data.case),
-        "quantities over the whole run",
-        panels,
-    )
-    .svg()
+    let banded = data.curves.iter().any(|curve| !curve.widths.is_empty());
+    let about = match banded {
+        true => format!("quantities over the whole run; bands: {BAND}"),
+        false => "quantities over the whole run".into(),
+    };
+    Picture::stacked(format!("{} · history", data.case), about, panels).svg()
 }
 
 /// Curves of each panel; omits powers that are zero throughout.

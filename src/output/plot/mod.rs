@@ -38,6 +38,8 @@ use self::canvas::LineStyle;
 use self::picture::{ColourBar, PictureAxis, PictureSeries};
 use super::numbers;
 use crate::discrete::quantities::Observable;
+use crate::study::companion::band::width_at;
+use colour::Colour;
 
 pub use ablation::AblationBars;
 pub use deflection::Deflection;
@@ -55,6 +57,35 @@ pub struct PlottedCurve {
     pub unit: String,
     /// Time [s] and value, in order of time; not finite if absent.
     pub points: Vec<(f64, f64)>,
+    /// Time [s] and half width of the error band; empty if there is none.
+    pub widths: Vec<(f64, f64)>,
+}
+
+/// Half width of a band, relative to the range of its curves, below which the line hides it.
+const HIDDEN: f64 = 3e-3;
+
+/// Name of an error band in a legend.
+const BAND: &str = "estimated error";
+
+/// Error bands of curves in one panel, each in its color, without those that a line hides; `floor` is the smallest half range of the axis.
+fn error_bands<'a>(curves: impl Iterator<Item = (&'a PlottedCurve, Colour)> + Clone, floor: f64) -> Vec<PictureSeries> {
+    let values = curves.clone().flat_map(|(curve, _)| curve.points.iter().map(|p| p.1));
+    let (low, high) = extent(values).unwrap_or_default();
+    let least = HIDDEN * (high - low).max(2.0 * floor);
+    let band = |(curve, colour): (&PlottedCurve, Colour)| {
+        let wide = curve.widths.iter().any(|(_, width)| *width > least);
+        let around = |(t, y): &(f64, f64)| width_at(&curve.widths, *t).map(|width| (*t, y - width, y + width));
+        let points = || {
+            curve
+                .points
+                .iter()
+                .filter(|p| p.1.is_finite())
+                .filter_map(around)
+                .collect::<Vec<_>>()
+        };
+        wide.then(|| PictureSeries::shade(&points(), colour))
+    };
+    curves.filter_map(band).collect()
 }
 
 impl PlottedCurve {

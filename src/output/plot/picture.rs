@@ -80,6 +80,8 @@ pub enum SeriesKind {
     Marks(Vec<(f64, f64)>, Glyph, Colour),
     /// A filled polygon below the grid.
     Area(Vec<(f64, f64)>, Colour),
+    /// A translucent polygon below the grid.
+    Shade(Vec<(f64, f64)>, Colour),
     /// A filled rectangle between two corners, clipped to the frame.
     Cell([(f64, f64); 2], Colour),
     /// Text at a distance [pt] from a point; omitted if it would overlap an earlier one.
@@ -246,9 +248,12 @@ impl PictureSeries {
 
     /// The band between two curves: `(x, low, high)`.
     pub fn band(points: &[(f64, f64, f64)], colour: Colour) -> Self {
-        let low = points.iter().map(|p| (p.0, p.1));
-        let high = points.iter().rev().map(|p| (p.0, p.2));
-        Self::area(low.chain(high), colour)
+        Self::new(SeriesKind::Area(outline(points), colour))
+    }
+
+    /// A translucent band between two curves: `(x, low, high)`.
+    pub fn shade(points: &[(f64, f64, f64)], colour: Colour) -> Self {
+        Self::new(SeriesKind::Shade(outline(points), colour))
     }
 
     /// A rectangle.
@@ -277,11 +282,19 @@ impl PictureSeries {
     /// Points that determine the range of an axis.
     pub fn points(&self) -> &[(f64, f64)] {
         match &self.kind {
-            SeriesKind::Line(points, _) | SeriesKind::Marks(points, ..) | SeriesKind::Area(points, _) => points,
+            SeriesKind::Line(points, _) | SeriesKind::Marks(points, ..) => points,
+            SeriesKind::Area(points, _) | SeriesKind::Shade(points, _) => points,
             SeriesKind::Cell(corners, _) => corners,
             SeriesKind::Label(..) => &[],
         }
     }
+}
+
+/// Outline of a band: the lower curve, and the upper one backwards.
+fn outline(points: &[(f64, f64, f64)]) -> Vec<(f64, f64)> {
+    let low = points.iter().map(|p| (p.0, p.1));
+    let high = points.iter().rev().map(|p| (p.0, p.2));
+    low.chain(high).collect()
 }
 
 /// Ranges and height with equal scales across and along, for a width [pt].

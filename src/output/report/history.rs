@@ -8,6 +8,7 @@ use crate::error::Result;
 use crate::output::envelope::{Envelope, HistorySource as Recorded, RowOrigin, each_row};
 use crate::output::folder::{ENVELOPE, HISTORY};
 use crate::output::numbers::count;
+use crate::study::companion::band::ErrorBand;
 
 /// Number of stretches of time whose least and largest values are kept.
 const STRETCHES: usize = 2000;
@@ -79,8 +80,8 @@ impl ReportHistory {
         (self.times().len() as u64) < self.rows || self.stretches > 0
     }
 
-    /// Columns with names, units, groups and meanings, then `others`; and a note if rows were joined.
-    pub fn json(&self, others: Vec<Value>) -> Value {
+    /// Columns with names, units, groups, meanings and half widths of error bands, then `others`; and a note if rows were joined.
+    pub fn json(&self, others: Vec<Value>, band: &ErrorBand) -> Value {
         if self.rows == 0 {
             return Value::Null;
         }
@@ -95,6 +96,12 @@ impl ReportHistory {
             all.insert("about".into(), one.map_or("", Observable::about).into());
             all.insert("usual".into(), one.is_some_and(usual).into());
             all.insert("values".into(), base64::numbers(values.iter().copied()));
+            if let Some(widths) = band.column_widths(name) {
+                all.insert(
+                    "widths".into(),
+                    base64::numbers(widths.into_iter().map(|(_, width)| width)),
+                );
+            }
             Value::Object(all)
         });
         let shown = self.columns.first().map_or(0, Vec::len) as u64;
@@ -114,7 +121,8 @@ impl ReportHistory {
                 )
             })
         });
-        json!({"columns": columns.chain(others).collect::<Vec<_>>(), "note": note, "rows": self.rows})
+        let banded = base64::numbers(band.rows.iter().map(|row| row[0]));
+        json!({"columns": columns.chain(others).collect::<Vec<_>>(), "banded": banded, "note": note, "rows": self.rows})
     }
 }
 

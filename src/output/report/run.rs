@@ -12,7 +12,8 @@ use crate::model::characteristic;
 use crate::numerics::threads::begin;
 use crate::output::bands;
 use crate::output::envelope::HistorySource as Recorded;
-use crate::output::folder::{CASE, ENVELOPE, FIELDS, HISTORY, SUMMARY};
+use crate::output::error_band;
+use crate::output::folder::{CASE, ENVELOPE, ERRORS, FIELDS, HISTORY, SUMMARY};
 use crate::output::numbers::{counted, duration, error_percent, percent, quantity, significant, trimmed, with_error};
 use crate::output::periodic::CYCLE;
 use crate::output::summary;
@@ -31,7 +32,9 @@ pub fn data(place: &Place) -> Result<Page> {
     if let (Some(found), None) = (&found, place.history) {
         summary::verify_table(place.dir, HISTORY, &found.result)?;
         summary::verify_table(place.dir, ENVELOPE, &found.result)?;
+        summary::verify_table(place.dir, ERRORS, &found.result)?;
     }
+    let band = error_band::read(place.dir)?;
     let (summary, head) = found.map(|found| (found.result, found.head)).unzip();
     let name = summary
         .as_ref()
@@ -47,7 +50,7 @@ pub fn data(place: &Place) -> Result<Page> {
     let (motion, recorded) = thread::scope(|scope| {
         let motion = begin(scope, || frames::read(&fields, frequency));
         let recorded = ReportHistory::read(Recorded::new(place.dir, place.history)).map(|history| {
-            let columns = history.json(beside(place, &history, frequency));
+            let columns = history.json(beside(place, &history, frequency), &band);
             (history, columns)
         });
         (motion.join(), recorded)

@@ -1,5 +1,5 @@
-//! Effect of the meshes along the beam and along the bladders on modes: a comparison with half the cells of the beam, and with
-//! twice the cells of a bladder.
+//! Effect of the meshes along the beam and along the bladders on modes, and of effects left out: a comparison with half the cells of the
+//! beam, with twice the cells of a bladder, and with all effects.
 //!
 //! Half the cells of the beam may not resolve a mode, or may be of another order. Such a mode is compared with twice the cells. A
 //! bladder has few cells: half of them are often zero, and cannot represent flow within a bladder.
@@ -30,6 +30,8 @@ pub struct ByMesh {
     pub beam: Option<Complex<f64>>,
     /// Along bladders.
     pub bladders: Option<Complex<f64>>,
+    /// Effects left out: `s` with all effects minus `s` [1/s].
+    pub effects: Option<Complex<f64>>,
     /// True if beam cells are of fourth order. A part of their error may be of second order, so the error may be as large as for that.
     pub fourth: bool,
     /// True if the beam was compared with twice the cells, false with half of them.
@@ -50,10 +52,7 @@ impl ByMesh {
 /// None: if a mesh has no modes, or not these, its effect remains unknown.
 pub fn compare_meshes(case: &Case, at_rest_under: Option<f64>, plan: &ModeOptions, found: &mut Modes) {
     let at = found.about.at;
-    let about = |case: &Case| match at_rest_under {
-        Some(at) => at_equilibrium(case, at),
-        None => linearise(case, at, None),
-    };
+    let about = |case: &Case| about_state(case, at, at_rest_under);
     found.compared = true;
     let enough = found.about.system().mesh.cells >= 2 * FEWEST;
     if let Some(coarse) = halved(case).filter(|_| enough) {
@@ -73,6 +72,14 @@ pub fn compare_meshes(case: &Case, at_rest_under: Option<f64>, plan: &ModeOption
         let mut fine = case.clone();
         fine.mesh.cells_per_bladder *= 2;
         along_bladders(about(&fine), plan, found);
+    }
+}
+
+/// Linearization about the start with the signals of an instant [s], or about the equilibrium under the loads of another.
+fn about_state(case: &Case, at: f64, at_rest_under: Option<f64>) -> Result<Linearised> {
+    match at_rest_under {
+        Some(at) => at_equilibrium(case, at),
+        None => linearise(case, at, None),
     }
 }
 
@@ -162,6 +169,58 @@ fn along_bladders(about: Result<Linearised>, plan: &ModeOptions, found: &mut Mod
     }
 }
 
+/// Compares with the modes of a case with all effects, as [`compare_meshes`]. Unsteady friction adds decays that crowd the slowest modes:
+/// oscillations are then searched at their own frequencies, as many as three times the work allows.
+pub fn compare_effects(full: &Case, at_rest_under: Option<f64>, plan: &ModeOptions, found: &mut Modes) {
+    let Ok(about) = about_state(full, found.about.at, at_rest_under) else {
+        return;
+    };
+    let length = found.about.system().model.length;
+    let mut tally = Tally::default();
+    let mut compare = |found: &mut Modes, only: Option<usize>, plan: &ModeOptions| {
+        let plan = ModeOptions {
+            count: plan.count + MORE,
+            ..*plan
+        };
+        let others = search(&about, FluidBehavior::Flowing, &plan, &mut tally).unwrap_or_default();
+        for (k, j, likeness) in pairs(&found.modes, &others, length) {
+            let mode = &mut found.modes[k];
+            let same = !mode.kind.swings() || likeness > SAME;
+            if same && only.is_none_or(|only| only == k) {
+                mode.by_mesh.effects = Some(others[j].s - mode.s);
+            }
+        }
+        tally.factorizations
+    };
+    if !found.left_out.contains(&Effect::UnsteadyFriction) {
+        compare(found, None, plan);
+    }
+    let lacks = |mode: &Mode| mode.kind.swings() && mode.by_mesh.effects.is_none();
+    let mut open: Vec<usize> = (0..found.modes.len()).filter(|&k| lacks(&found.modes[k])).collect();
+    open.sort_by(|a, b| found.modes[*a].s.im.total_cmp(&found.modes[*b].s.im));
+    for k in open {
+        let near_hz = found.modes[k].s.im / std::f64::consts::TAU;
+        let count = 1;
+        if compare(
+            found,
+            Some(k),
+            &ModeOptions {
+                count,
+                near_hz,
+                ..*plan
+            },
+        ) > MOST_WORK * found.factorizations
+        {
+            break;
+        }
+    }
+    found.factorizations += tally.factorizations;
+    found.solves += tally.solves;
+}
+
+/// Largest number of factorizations with all effects over that of the modes.
+const MOST_WORK: u64 = 3;
+
 /// Number of additional modes, since the last ones may change their order.
 const MORE: usize = 4;
 
@@ -229,55 +288,70 @@ fn real(modes: &[Mode], others: &[Mode], length: f64) -> Vec<(usize, usize, f64)
 /// Largest number of modes that the warning names.
 const LISTED: usize = 4;
 
-/// Warns of modes that depend strongly on the meshes, or whose dependence is unknown.
+/// Warns of modes that depend strongly on the meshes or on effects left out, or whose dependence is unknown.
 pub fn warning(found: &Modes) -> Option<String> {
     if !found.compared {
         return None;
     }
-    let mut large: Vec<(usize, f64, &str)> = vec![];
-    let mut unknown: Vec<String> = vec![];
+    // by meshes, by effects
+    let mut large: [Vec<(usize, f64, &str)>; 2] = Default::default();
+    let mut unknown: [Vec<String>; 2] = Default::default();
     for (k, mode) in found.modes.iter().enumerate().filter(|(_, mode)| !mode.kind.stays()) {
-        let worst = [("frequency", mode.mesh_error()), ("rate", mode.rate_error())]
+        let effects = [mode.effects_error(), mode.rate_effects_error()].map(|error| error.unwrap_or(0.0));
+        let worst = ["frequency", "rate"]
             .into_iter()
-            .filter_map(|(what, error)| Some((what, error?)))
+            .zip(mode.errors().into_iter().zip(effects))
+            .filter_map(|(what, (error, effects))| Some((what, error?, usize::from(2.0 * effects > error?))))
             .max_by(|a, b| a.1.total_cmp(&b.1));
         match worst {
-            Some((what, error)) if error > LARGE => large.push((k + 1, error, what)),
+            Some((what, error, cause)) if error > LARGE => large[cause].push((k + 1, error, what)),
             _ if mode.lacks_beam_error() || found.bladders_compared && mode.by_mesh.bladders.is_none() => {
-                unknown.push((k + 1).to_string());
+                unknown[0].push((k + 1).to_string());
             }
+            _ if !found.left_out.is_empty() && mode.by_mesh.effects.is_none() => unknown[1].push((k + 1).to_string()),
             _ => {}
         }
     }
+    let effects = Effect::names(&found.left_out, ", ");
+    let plural = |all: &[String]| if all.len() == 1 { "" } else { "s" };
+    let mut sentences = vec![];
+    let by_effects = format!("errors by effects left out ({effects})");
+    for (cause, all) in ["errors of the meshes", &by_effects].into_iter().zip(&large) {
+        sentences.extend((!all.is_empty()).then(|| format!("{cause}: {}", listed(all))));
+    }
+    let without = ["finer meshes lack".to_owned(), format!("were not found with {effects}")];
+    let kinds = ["of the meshes", "by effects left out"].into_iter().zip(without);
+    for ((kind, without), all) in kinds.zip(&unknown).filter(|(_, all)| !all.is_empty()) {
+        sentences.push(format!(
+            "the error {kind} is not known for mode{} {}, which {without}",
+            plural(all),
+            all.join(", ")
+        ));
+    }
+    let finer = "Increase /mesh/cells_per_bladder or /mesh/cells_per_segment, or use --accuracy, which refines both.";
+    let on = |effect: &Effect| format!("--set '/effects/{effect}=\"on\"'");
+    let on: Vec<String> = found.left_out.iter().map(on).collect();
+    let remedies = [
+        (!(large[0].is_empty() && unknown[0].is_empty())).then(|| finer.to_owned()),
+        (!(large[1].is_empty() && unknown[1].is_empty())).then(|| format!("Use {}.", on.join(" "))),
+    ];
+    let remedies: Vec<String> = remedies.into_iter().flatten().collect();
+    (!sentences.is_empty())
+        .then(|| Code::ErrorEstimate.warning(format!("estimate: {}. {}", sentences.join("; "), remedies.join(" "))))
+}
+
+/// Text of the largest errors: number of the mode, error, name of the figure.
+fn listed(large: &[(usize, f64, &str)]) -> String {
+    let mut large = large.to_vec();
     large.sort_by(|a, b| b.1.total_cmp(&a.1));
     let more = large.len().saturating_sub(LISTED);
-    let mut listed: Vec<String> = large
+    let each = large
         .into_iter()
         .take(LISTED)
         .map(|(k, error, what)| match error >= 1.0 {
             true => format!("{what} of mode {k} larger than itself"),
             false => format!("{what} of mode {k} about {:.0} %", 100.0 * error),
-        })
-        .collect();
-    if more > 0 {
-        listed.push(format!("{more} more"));
-    }
-    let mut sentences = vec![];
-    if !listed.is_empty() {
-        sentences.push(format!("errors of the meshes: {}", listed.join(", ")));
-    }
-    if !unknown.is_empty() {
-        let plural = if unknown.len() == 1 { "" } else { "s" };
-        sentences.push(format!(
-            "the error of the meshes is not known for mode{plural} {}, which finer meshes lack",
-            unknown.join(", ")
-        ));
-    }
-    (!sentences.is_empty()).then(|| {
-        Code::ErrorEstimate.warning(format!(
-            "estimate: {}. Increase /mesh/cells_per_bladder or /mesh/cells_per_segment, or use --accuracy, which \
-             refines both.",
-            sentences.join("; ")
-        ))
-    })
+        });
+    let more = (more > 0).then(|| format!("{more} more"));
+    each.chain(more).collect::<Vec<_>>().join(", ")
 }

@@ -28,6 +28,7 @@ use nalgebra::Complex;
 use serde::{Deserialize, Serialize};
 
 use crate::case::Case;
+use crate::case::schema::Effect;
 use crate::error::{Code, Error, Result, SolverError, StopPoint};
 use crate::run::json_null;
 use crate::spectral::{self, EigenPair, EigenvalueOptions, Pencil, SpectralError};
@@ -35,7 +36,7 @@ use crate::spectral::{self, EigenPair, EigenvalueOptions, Pencil, SpectralError}
 use clustered::PartialSearch;
 pub use kind::TimeBehavior;
 pub use linearise::{FluidBehavior, Linearised, at_equilibrium, linearise};
-pub use meshes::{ByMesh, compare_meshes};
+pub use meshes::{ByMesh, compare_effects, compare_meshes};
 pub use sensitivity::{ModeSensitivity, differentiate};
 pub use shape::{ModeShape, Shapes, likeness};
 pub use sort::ModeFilter;
@@ -127,10 +128,33 @@ impl Mode {
     /// if the damping
     /// ratio is below 1e-6.
     pub fn rate_error(&self) -> Option<f64> {
-        let rate = self.s.re.abs();
-        (rate > UNDAMPED * self.s.norm())
-            .then(|| self.off(|s| s.re, rate))
-            .flatten()
+        self.off(|s| s.re, self.s.re.abs()).filter(|_| self.is_damped())
+    }
+
+    /// Error of the frequency due to the effects left out, relative to the frequency; None if it is unknown or no effect is left out.
+    pub fn effects_error(&self) -> Option<f64> {
+        let effects = self.by_mesh.effects?;
+        Some(effects.im.abs() / self.s.im.abs()).filter(|_| self.kind.swings())
+    }
+
+    /// Error of the growth or decay rate due to the effects left out, as [`Mode::rate_error`].
+    pub fn rate_effects_error(&self) -> Option<f64> {
+        let effects = self.by_mesh.effects?;
+        Some(effects.re.abs() / self.s.re.abs()).filter(|_| self.is_damped())
+    }
+
+    /// Errors of frequency and of rate due to meshes and effects; None if the error due to the meshes is unknown.
+    pub fn errors(&self) -> [Option<f64>; 2] {
+        let sum = |by_mesh: Option<f64>, by_effects: Option<f64>| Some(by_mesh? + by_effects.unwrap_or(0.0));
+        [
+            sum(self.mesh_error(), self.effects_error()),
+            sum(self.rate_error(), self.rate_effects_error()),
+        ]
+    }
+
+    /// True if the rate is no rounding error.
+    fn is_damped(&self) -> bool {
+        self.s.re.abs() > UNDAMPED * self.s.norm()
     }
 
     /// True if the mode moves and its error due to the mesh of the beam is not known.
@@ -185,6 +209,10 @@ pub struct Modes {
     pub compared: bool,
     /// True if there is a mesh along bladders that could be compared with another.
     pub bladders_compared: bool,
+    /// Effects that the modes leave out and that are compared.
+    pub left_out: Vec<Effect>,
+    /// Reason why errors exclude effects that are left out.
+    pub excluded: Option<String>,
 }
 
 /// Modes of the full case about its start.
@@ -214,6 +242,8 @@ pub fn compute(about: Linearised, plan: &ModeOptions) -> Result<Modes> {
         clustered: tally.clustered,
         compared: false,
         bladders_compared: false,
+        left_out: vec![],
+        excluded: None,
     };
     if plan.limits {
         limits::find(&mut found, plan);

@@ -99,7 +99,7 @@ fn cycle(case: &Case, ask: AnalysisRequest) -> Result<AnalysisOutcome> {
         power::share_errors(&mut found);
     } else if ask.meshes && summary.status == Status::Finished {
         let here = numbers::of_summary(&case, summary)?;
-        let by_mesh = meshes::judge(&case, &here, &mut of)?.with_effects(&case, &here, &mut of)?;
+        let by_mesh = meshes::judge(&case, &here, &mut of)?;
         errors(&mut found, &by_mesh, &|name| name.into());
         power::share_errors(&mut found);
     }

@@ -112,7 +112,7 @@ fn small(case: &Case, ask: AnalysisRequest) -> Result<AnalysisOutcome> {
         }
     };
     if ask.meshes && refined.is_none() {
-        modes::compare_meshes(case, None, &plan, &mut all);
+        refine::meshes::judge_modes(case, None, &plan, &mut all)?;
     }
     let mut found = of_modes(&all);
     if let Some((_, accuracy)) = &refined {
@@ -144,10 +144,11 @@ pub fn of_modes(all: &modes::Modes) -> AnalysisOutcome {
         let size = mode.s.norm();
         found.put(format!("{name}.frequency_hz"), mode.frequency_hz());
         found.put(format!("{name}.frequency_bound_hz"), mode.error / TAU);
-        found.put(format!("{name}.frequency_hz.error"), mode.mesh_error());
+        let [frequency, rate] = mode.errors();
+        found.put(format!("{name}.frequency_hz.error"), frequency);
         found.put(format!("{name}.damping_ratio"), mode.damping_ratio());
         found.put(format!("{name}.damping_ratio_bound"), mode.error / size);
-        found.put(format!("{name}.damping_ratio.error"), mode.rate_error());
+        found.put(format!("{name}.damping_ratio.error"), rate);
         found.put(format!("{name}.growth_per_s"), mode.s.re);
         let strong = mode.damping_ratio().map(|ratio| f64::from(u8::from(ratio > STRONG)));
         found.put(format!("{name}.strongly_damped"), strong);

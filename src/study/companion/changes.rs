@@ -92,7 +92,7 @@ fn changed(case: &Case, cells: [usize; 2], cause: ErrorCause, steps: u64, limits
         let Some((variant, factor)) = Variant::with_change(case, cells, cause, tighter)? else {
             break;
         };
-        let Ok(run) = finish(&variant, limits) else {
+        let Ok((run, _)) = finish(&variant, limits) else {
             if let Changed::Absent = last {
                 last = Changed::Unfinished;
             }

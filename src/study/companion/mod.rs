@@ -8,6 +8,7 @@
 //! error         differences of figures
 //! attribution   which setting makes an error that is large, and the warning
 //! changes       runs with one change
+//! band          error band of the history
 //! ```
 //!
 //! With `x` a figure of the run and `x'` that of the companion, the error is the whole difference `|x - x'|`:
@@ -23,6 +24,7 @@
 //! its quantity. `docs/accuracy.md` has the coverage that random scenes show.
 
 pub mod attribution;
+pub mod band;
 mod changes;
 pub mod error;
 pub mod variant;
@@ -41,7 +43,7 @@ use crate::integrate::halt;
 use crate::numerics::threads::{self, StartedTask};
 use crate::run::checkpoint::Checkpoint;
 use crate::run::dynamics::{self, Outcome};
-use crate::run::record::{Control, Progress, Recorder, Unrecorded};
+use crate::run::record::{Control, Progress, Recorder, ThinnedRecorder, ThinnedRows};
 use crate::run::summary::{CompanionRun, Figures, Status, Summary};
 use attribution::attribute;
 use variant::{ErrorCause, Variant};
@@ -186,7 +188,7 @@ fn accompany(
     })?;
     let summary = &mut outcome.summary;
     match found {
-        Ok((companion, of)) => {
+        Ok((companion, of, rows)) => {
             summary.errors = error::errors(summary, &of);
             // a measured error replaces one that the mesh was expected to make
             if summary
@@ -203,6 +205,7 @@ fn accompany(
             }
             summary.companion = Some(companion);
             attribute(case, summary, accuracy, recorder)?;
+            recorder.companion(&rows)?;
         }
         Err(reason) => {
             let reason = match summary.status {
@@ -275,8 +278,8 @@ pub fn companion_steps(summary: &Summary) -> f64 {
 /// Makes a companion of a case, where that applies.
 type Attempt = fn(&Case) -> Result<Option<Variant>>;
 
-/// The companion of a case with its summary, or the reason why there is none.
-fn companion_of(case: &Case, limits: &Limits) -> std::result::Result<(CompanionRun, Summary), String> {
+/// The companion of a case with its summary and history, or the reason why there is none.
+fn companion_of(case: &Case, limits: &Limits) -> std::result::Result<(CompanionRun, Summary, ThinnedRows), String> {
     let attempts: [Attempt; 3] = [Variant::with_all_effects, Variant::with_its_effects, Variant::tighter];
     let mut reason = String::new();
     for attempt in attempts {
@@ -289,7 +292,7 @@ fn companion_of(case: &Case, limits: &Limits) -> std::result::Result<(CompanionR
             }
         };
         match finish(&variant, limits) {
-            Ok(summary) => return Ok((variant.describe(&summary), summary)),
+            Ok((summary, rows)) => return Ok((variant.describe(&summary), summary, rows)),
             Err(why) => reason = why,
         }
         if limits.is_cancelled() {
@@ -300,16 +303,17 @@ fn companion_of(case: &Case, limits: &Limits) -> std::result::Result<(CompanionR
 }
 
 /// Runs a case within limits; the reason where it does not reach its end.
-fn finish(variant: &Variant, limits: &Limits) -> std::result::Result<Summary, String> {
+fn finish(variant: &Variant, limits: &Limits) -> std::result::Result<(Summary, ThinnedRows), String> {
     let system = System::new(&variant.case).map_err(|error| error.to_string())?;
     let unknowns = system.layout.len as u64;
     let too_long = |steps: u64| steps * unknowns > limits.work();
-    let mut recorder = Unrecorded(|progress: &Progress| {
-        if limits.is_cancelled() || too_long(progress.steps) {
-            return Control::Stop(String::new());
-        }
-        Control::Continue
-    });
+    let mut recorder = ThinnedRecorder {
+        hook: |progress: &Progress| match limits.is_cancelled() || too_long(progress.steps) {
+            true => Control::Stop(String::new()),
+            false => Control::Continue,
+        },
+        rows: ThinnedRows::default(),
+    };
     let outcome = dynamics::figures(&variant.case, system, &mut recorder);
     let summary = outcome.map_err(|error| error.to_string())?.summary;
     // the work of the other run decides, not the time that either takes
@@ -328,5 +332,5 @@ fn finish(variant: &Variant, limits: &Limits) -> std::result::Result<Summary, St
         let reason = summary.reason.unwrap_or_default();
         return Err(format!("the companion ended early: {reason}"));
     }
-    Ok(summary)
+    Ok((summary, recorder.rows))
 }

@@ -123,7 +123,7 @@ impl Variant {
     /// # Errors
     /// As [`System::new`].
     pub fn tighter(case: &Case) -> Result<Option<Self>> {
-        let mut case = unrecorded(case);
+        let mut case = recorded_alike(case);
         case.solver.rtol = (0.1 * case.solver.rtol).max(TOLERANCES[0]);
         case.mesh.cells_per_segment *= 2;
         case.mesh.cells_per_bladder *= 2;
@@ -131,7 +131,7 @@ impl Variant {
     }
 
     fn discretized(case: &Case, added: Vec<Effect>) -> Result<Self> {
-        let mut case = unrecorded(case);
+        let mut case = recorded_alike(case);
         let unresolved = resolution::unresolved(&case, &System::new(&case)?);
         let finer = |setting: &str, cells: usize| resolution::finer(&unresolved, setting, cells, FINEST * cells);
         case.solver.rtol = (10.0 * case.solver.rtol).min(TOLERANCES[1]);
@@ -215,6 +215,13 @@ impl Variant {
             earlier_runs: vec![],
         }
     }
+}
+
+/// The case without checkpoints, with the rows of its history.
+fn recorded_alike(case: &Case) -> Case {
+    let mut alike = unrecorded(case);
+    alike.time.history = case.time.history;
+    alike
 }
 
 /// True for a fourth-order mesh so coarse that its error is measured on a finer one.

@@ -5,6 +5,7 @@ use crate::case::Case;
 use crate::case::schema::{Choice, Effect, EffectChoices, Effects};
 use crate::discrete::System;
 use crate::error::Result;
+use crate::model::Model;
 use crate::model::effects::EffectSet;
 
 /// Case with the effects that another case leaves out.
@@ -20,15 +21,17 @@ pub struct Full {
 /// do effects that are active by name only. Transverse motion stays off if nothing deflects the beam, which is exact.
 /// `None` if the case leaves nothing out.
 pub fn full(case: &Case) -> Result<Option<Full>> {
-    let auto = effects(case)?;
+    full_of(case, &Model::new)
+}
+
+/// Returns the same for an analysis that builds the model of a case by `model`, which may leave out other effects than a run.
+pub fn full_of(case: &Case, model: &dyn Fn(&Case) -> Result<Model>) -> Result<Option<Full>> {
+    let (auto, own) = (effects(case)?, model(case)?.effects);
     let mut choices = named(case, &auto);
-    let open: Vec<Effect> = Effect::CHOSEN
-        .iter()
-        .copied()
-        .filter(|effect| {
-            choices.choice(*effect) == Choice::Auto && !effect.by_name(case.formulation) && !straight(&auto, *effect)
-        })
-        .collect();
+    let open = Effect::CHOSEN.iter().copied().filter(|effect| {
+        choices.choice(*effect) == Choice::Auto && !effect.by_name(case.formulation) && !straight(&auto, *effect)
+    });
+    let open: Vec<Effect> = open.filter(|_| case.effects != Effects::Full).collect();
     let all = with_effects(&choices, &open);
     match has(case, &all, &open) {
         true => choices = all,
@@ -42,7 +45,7 @@ pub fn full(case: &Case) -> Result<Option<Full>> {
         }
     }
     let case = with(case, Effects::Chosen(choices));
-    let left_out = more(&auto, &effects(&case)?);
+    let left_out = more(&own, &model(&case)?.effects);
     Ok((!left_out.is_empty()).then_some(Full { case, left_out }))
 }
 
@@ -68,8 +71,7 @@ fn more(few: &EffectSet, many: &EffectSet) -> Vec<Effect> {
 fn named(case: &Case, auto: &EffectSet) -> EffectChoices {
     let mut choices = case.effects.choices();
     for &effect in Effect::CHOSEN {
-        let there = (case.effects == Effects::Full && !effect.by_name(case.formulation)) || auto.has(effect);
-        if choices.choice(effect) == Choice::Auto && there {
+        if choices.choice(effect) == Choice::Auto && auto.has(effect) {
             choices.set(effect, Choice::On);
         }
     }

@@ -15,12 +15,17 @@ use serde::{Deserialize, Serialize};
 
 use super::{RefinedNumbers, SAFETY, has_cells_along_bladders};
 use crate::case::Case;
+use crate::case::schema::Effect;
 use crate::discrete::System;
 use crate::discrete::resolution::{self, LIMIT as LARGE};
 use crate::error::numbers::error_percent as percent;
 use crate::error::{Code, Error, Result};
-use crate::study::effects::full_model::full;
+use crate::model::Model;
+use crate::run::modes::{ModeOptions, Modes, compare_effects, compare_meshes};
+use crate::study::effects::full_model::{Full, full_of};
 
+/// Largest number of unknowns with all effects over that of an analysis: cost is proportional to unknowns.
+const MOST_WORK: usize = 3;
 /// Relative error from which a figure is not resolved: a percentage of it has no meaning.
 const UNRESOLVED: f64 = 1.0;
 
@@ -31,7 +36,7 @@ pub struct ErrorShare {
     pub beam: Option<f64>,
     /// Error due to the cells along bladders; `None` as for `beam`.
     pub bladders: Option<f64>,
-    /// Error due to omitted effects, for equilibria and cycles.
+    /// Error due to omitted effects, for equilibria; cycles omit none.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub effects: Option<f64>,
 }
@@ -57,6 +62,12 @@ pub struct Meshes {
     /// Absolute errors by name, each in the unit of its number.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub errors: BTreeMap<String, f64>,
+    /// Effects that the analysis leaves out and that errors include.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub left_out: Vec<String>,
+    /// Reason why errors exclude effects that are left out.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub excluded: Option<String>,
     /// Reasons why a mesh could not be compared.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub unknown: Vec<String>,
@@ -96,6 +107,46 @@ pub fn judge(
     Ok(found)
 }
 
+/// The case with all effects for an analysis that builds its model by `model`, or the reason why it is not computed. `None` if the
+/// analysis leaves nothing out.
+///
+/// # Errors
+/// As [`System::new`](crate::discrete::System::new).
+fn affordable(
+    case: &Case,
+    model: &dyn Fn(&Case) -> Result<Model>,
+) -> Result<Option<std::result::Result<Full, String>>> {
+    let Some(full) = full_of(case, model)? else {
+        return Ok(None);
+    };
+    let unknowns = |case: &Case| Ok::<_, Error>(System::with(case, model(case)?)?.layout.len);
+    let (own, all) = (unknowns(case)?, unknowns(&full.case)?);
+    Ok(Some(match all <= MOST_WORK * own {
+        true => Ok(full),
+        false => Err(format!(
+            "errors exclude the effects left out ({}): with them there are {all} unknowns instead of {own}",
+            Effect::names(&full.left_out, ", ")
+        )),
+    }))
+}
+
+/// Adds the errors due to meshes and omitted effects to modes about the start, or about the equilibrium under the loads of an instant [s].
+///
+/// # Errors
+/// As [`System::new`](crate::discrete::System::new).
+pub fn judge_modes(case: &Case, at_rest_under: Option<f64>, plan: &ModeOptions, found: &mut Modes) -> Result<()> {
+    compare_meshes(case, at_rest_under, plan, found);
+    match affordable(case, &Model::of_modes)? {
+        None => {}
+        Some(Err(reason)) => found.excluded = Some(reason),
+        Some(Ok(full)) => {
+            found.left_out.clone_from(&full.left_out);
+            compare_effects(&full.case, at_rest_under, plan, found);
+        }
+    }
+    Ok(())
+}
+
 impl Meshes {
     /// Adds the errors due to the effects that a case omits.
     ///
@@ -107,9 +158,14 @@ impl Meshes {
         here: &RefinedNumbers,
         compute: &mut dyn FnMut(&Case) -> Result<RefinedNumbers>,
     ) -> Result<Self> {
-        if let Some(full) = full(case)? {
-            self.compare("effects", here, compute(&full.case), 1.0, |share| &mut share.effects);
-            self.sum(here);
+        match affordable(case, &Model::new)? {
+            None => {}
+            Some(Err(reason)) => self.excluded = Some(reason),
+            Some(Ok(full)) => {
+                self.compare("effects", here, compute(&full.case), 1.0, |share| &mut share.effects);
+                self.left_out = full.left_out.iter().map(Effect::to_string).collect();
+                self.sum(here);
+            }
         }
         Ok(self)
     }
@@ -158,13 +214,17 @@ impl Meshes {
     /// Describes the largest error in one line.
     pub fn describe(&self) -> Option<String> {
         let (name, share) = self.worst()?;
+        let excluded = self
+            .excluded
+            .as_ref()
+            .map_or(String::new(), |reason| format!("; {reason}"));
         Some(format!(
-            "largest estimated error: {} of {name}{}",
+            "largest estimated error: {} of {name}{}{excluded}",
             match share.total() >= UNRESOLVED {
                 true => "more than the value".to_owned(),
                 false => format!("about {}", percent(share.total())),
             },
-            share.parts()
+            share.parts(&self.left_out)
         ))
     }
 
@@ -182,12 +242,12 @@ impl Meshes {
             match share.total() >= UNRESOLVED {
                 true => format!(
                     "{name} is not resolved: its estimated error is larger than itself{}{others}",
-                    share.parts()
+                    share.parts(&self.left_out)
                 ),
                 false => format!(
                     "{name} has a relative error of about {}{}{others}",
                     percent(share.total()),
-                    share.parts()
+                    share.parts(&self.left_out)
                 ),
             }
         });
@@ -219,11 +279,15 @@ impl ErrorShare {
         }
     }
 
-    fn parts(&self) -> String {
+    fn parts(&self, left_out: &[String]) -> String {
+        let effects = match left_out {
+            [] => "effects left out".into(),
+            all => format!("effects left out: {}", all.join(", ")),
+        };
         let parts = [
             (self.beam, "the cells of the beam"),
             (self.bladders, "those along bladders"),
-            (self.effects, "effects left out"),
+            (self.effects, &*effects),
         ];
         let parts = parts.into_iter().filter_map(|(part, what)| Some((part?, what)));
         let parts: Vec<_> = parts.collect();

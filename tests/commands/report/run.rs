@@ -304,3 +304,44 @@ fn the_tab_key_leads_through_the_page() {
     browser.until("document.querySelector('.player .main').getAttribute('aria-label') === 'Pause'");
     assert_eq!(browser.problems(), Vec::<String>::new());
 }
+
+/// Goal: histories have their error bands in a file, in the pictures and on the page; a run without companion has none and removes those
+/// of an earlier one.
+#[test]
+fn histories_have_error_bands() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let arguments = ["run", "cases/two-bladders.json"];
+    let page = made(folder.path(), &arguments);
+    let read = |name: &str| std::fs::read_to_string(folder.path().join(name));
+    let heading = |name: &str| {
+        read(name)
+            .expect("a table")
+            .lines()
+            .next()
+            .expect("headings")
+            .to_owned()
+    };
+    let (bands, columns) = (heading("errors.csv"), heading("history.csv"));
+    let columns: Vec<&str> = columns.split(',').collect();
+    assert!(
+        bands.starts_with("t [s],tip_u1 [m]") && bands.split(',').all(|one| columns.contains(&one)),
+        "{bands}"
+    );
+    for picture in ["history.svg", "energy.svg"] {
+        assert!(read(picture).expect("a picture").contains("fill-opacity"), "{picture}");
+    }
+    let mut browser = Browser::start();
+    sound(&mut browser, &page, &["histories"]);
+    assert!(
+        browser.eval("document.getElementById('histories').textContent.includes('is its estimated error')") == true
+    );
+    let widths = "(() => { const h = unpackHistory(data.history); const c = h.columns.find(c => c.name === 'tip_u1'); \
+        return c.widths.length === h.times.length ? Math.max(...c.widths) : -1; })()";
+    let widest = browser.number(widths);
+    assert!((1e-8..1e-7).contains(&widest), "{widest:e}");
+    made(
+        folder.path(),
+        &[&arguments[..], &["--set", "/companion=\"off\""]].concat(),
+    );
+    assert!(read("errors.csv").is_err() && !read("history.svg").expect("a picture").contains("fill-opacity"));
+}

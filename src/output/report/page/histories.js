@@ -36,6 +36,7 @@ function makePanels(host, clock, readable) {
 function onePanel(host, group, times, series, height, title) {
   const most = Math.max(...series.map((s) => largest(s.values)));
   const [factor, unit] = scaledUnit(most, series[0].unit);
+  const banded = series.filter((s) => s.widths && largest(s.widths) > 0);
   const clean = (values) => Array.from(values, (x) => (Number.isFinite(x) ? x / factor : null));
   const [soft, line] = [css("--soft"), css("--line")];
   const axis = { stroke: soft, grid: { stroke: line, width: 1 }, ticks: { stroke: line, width: 1 }, font: "12px ui-sans-serif, system-ui, sans-serif" };
@@ -48,10 +49,10 @@ function onePanel(host, group, times, series, height, title) {
   const ylabel = `${heading}${unit ? `[${unit}]` : ""}`.trim() || title.slice(0, Math.floor((height - 50) / 6.6));
   const options = {
     width: Math.max(holder.clientWidth, 240), height, cursor: { sync: { key: group.key }, drag: { x: true, y: false, uni: 20 }, points: { size: 6 } },
-    legend: { live: true, markers: { dash: (u, k) => (u.series[k].dash ? "dashed" : "solid") } }, scales: { x: { time: false, min: group.range?.[0], max: group.range?.[1] } },
+    legend: { live: true, markers: { dash: (u, k) => (u.series[k].dash ? "dashed" : "solid") } }, scales: { x: { time: false, min: group.range?.[0], max: group.range?.[1] }, y: { range: (u, low, high) => bandRange(u, banded, factor, low, high) } },
     axes: [{ ...axis, values: minus, label: "time [s]", labelSize: 18, labelFont: axis.font, size: 32 }, { ...axis, values: minus, size: 62, label: ylabel, labelSize: 18, labelFont: axis.font }],
     series: [{ label: "t [s]", value: shown }, ...series.map((s) => ({ label: `${s.label}${unit ? ` [${unit}]` : ""}`, stroke: s.colour, width: 1.6, value: shown, points: { show: false }, dash: s.dash }))],
-    hooks: { setScale: [(u, key) => key === "x" && !group.busy && group.plots.some((p) => p.plot === u) && group.zoom(u.scales.x.min, u.scales.x.max)] },
+    hooks: { drawAxes: [(u) => banded.forEach((s) => paintBand(u, times, s, factor))], setScale: [(u, key) => key === "x" && !group.busy && group.plots.some((p) => p.plot === u) && group.zoom(u.scales.x.min, u.scales.x.max)] },
   };
   const plot = new uPlot(options, [Array.from(times), ...series.map((s) => clean(s.values))], holder);
   plot.ctx.canvas.setAttribute("role", "img");
@@ -60,6 +61,45 @@ function onePanel(host, group, times, series, height, title) {
   plot.over.append(mark);
   plot.over.addEventListener("dblclick", () => group.zoom(...group.full));
   return { plot, line: mark, holder };
+}
+
+/** Range of the vertical axis, with the bands that are in view. */
+function bandRange(u, banded, factor, low, high) {
+  if (low === null) return [null, null];
+  const [from, to] = u.series[0].idxs || [0, -1];
+  for (const s of banded) for (let k = from; k <= to; k++) {
+    if (!Number.isFinite(s.values[k]) || !Number.isFinite(s.widths[k])) continue;
+    low = Math.min(low, (s.values[k] - s.widths[k]) / factor);
+    high = Math.max(high, (s.values[k] + s.widths[k]) / factor);
+  }
+  return uPlot.rangeNum(low, high, 0.1, true);
+}
+
+/** Shade around a curve. */
+function paintBand(u, times, s, factor) {
+  const { ctx, bbox } = u;
+  ctx.save();
+  ctx.beginPath();
+  ctx.rect(bbox.left, bbox.top, bbox.width, bbox.height);
+  ctx.clip();
+  ctx.beginPath();
+  const edge = (k, side) => Number.isFinite(s.values[k]) && Number.isFinite(s.widths[k]) && ctx.lineTo(u.valToPos(times[k], "x", true), u.valToPos((s.values[k] + side * s.widths[k]) / factor, "y", true));
+  for (let k = 0; k < times.length; k++) edge(k, 1);
+  for (let k = times.length - 1; k >= 0; k--) edge(k, -1);
+  ctx.globalAlpha = 0.2;
+  ctx.fillStyle = s.colour;
+  ctx.fill();
+  ctx.restore();
+}
+
+/** Values at other times, linear between; not a number outside. */
+function interpolated(values, from, times) {
+  let k = 0;
+  return Array.from(times, (t) => {
+    while (k < from.length - 1 && from[k] < t) k++;
+    if (from[k] === t) return values[k];
+    return k > 0 && from[k] > t ? values[k - 1] + ((values[k] - values[k - 1]) * (t - from[k - 1])) / (from[k] - from[k - 1]) : NaN;
+  });
 }
 
 /** Buttons for those who do not drag. */
@@ -93,6 +133,8 @@ function families(columns) {
 function unpackHistory(history) {
   if (!history) return null;
   const columns = history.columns.map((c) => ({ ...c, values: floats(c.values) }));
+  const banded = floats(history.banded);
+  for (const c of columns) if (c.widths) c.widths = interpolated(floats(c.widths), banded, columns[0].values);
   return { ...history, times: columns[0].values, columns: columns.slice(1) };
 }
 
@@ -109,7 +151,7 @@ function showHistories(host, history, clock) {
     const shown = families(all.filter((c) => chosen.has(c.name)));
     let colour = 0;
     for (const family of shown) {
-      const series = family.map((c) => ({ label: c.label, unit: c.unit, values: c.values, colour: named(colour++) }));
+      const series = family.map((c) => ({ label: c.label, unit: c.unit, values: c.values, widths: c.widths, colour: named(colour++) }));
       group.add(series, 210, family.length > 1 ? family[0].group.toLowerCase() : family[0].label);
     }
     // Once more when the plots stand: their first picture comes a moment later.
@@ -127,7 +169,8 @@ function showHistories(host, history, clock) {
       });
       return button;
     }))));
-  const card = figure(null, "Drag across a picture to look closer; a double click or Escape shows the whole run again. Below each picture stand the figures at the pointer, or at the time of the player.", ...chips, zoomTools(group), slot, zero.length ? el("p", { class: "caption", text: `Zero throughout: ${zero.join(", ")}.` }) : null, history.note ? el("p", { class: "caption", text: history.note }) : null);
+  const shade = all.some((c) => c.widths) ? " The shade around a curve is its estimated error." : "";
+  const card = figure(null, `Drag across a picture to look closer; a double click or Escape shows the whole run again. Below each picture stand the figures at the pointer, or at the time of the player.${shade}`, ...chips, zoomTools(group), slot, zero.length ? el("p", { class: "caption", text: `Zero throughout: ${zero.join(", ")}.` }) : null, history.note ? el("p", { class: "caption", text: history.note }) : null);
   card.addEventListener("keydown", (event) => event.key === "Escape" && group.zoom(...group.full));
   document.addEventListener("keydown", (event) => event.key === "Escape" && event.target === document.body && group.zoom(...group.full));
   host.append(card);
