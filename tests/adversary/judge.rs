@@ -255,12 +255,12 @@ impl Off {
     }
 }
 
-/// Errors of all figures that count, worst first: those that are surely large before those that may be.
+/// Errors of all figures that count, worst first: those that are surely large before those that may be. Negligible quantities have none.
 pub fn errors(figures: &Figures, reference: &Reference, counts: impl Fn(&str) -> bool) -> Vec<Off> {
     let mut all = vec![];
     for (quantity, known) in &reference.figures {
+        let (size, negligible) = (reference.sizes[quantity], reference.is_negligible(quantity, figures));
         for (figure, &(value, error)) in known.iter().filter(|(figure, _)| counts(figure)) {
-            let size = reference.sizes[quantity];
             let got = figures.get(quantity).and_then(|q| q.get(figure.as_str())).copied();
             let Some(got) = got else { continue };
             all.push(Off {
@@ -268,7 +268,7 @@ pub fn errors(figures: &Figures, reference: &Reference, counts: impl Fn(&str) ->
                 figure: figure.clone(),
                 value: got,
                 reference: value,
-                error: (got - value).abs() / size,
+                error: if negligible { 0.0 } else { (got - value).abs() / size },
                 doubt: error / size,
             });
         }

@@ -51,10 +51,17 @@ fn number(name: &str) -> Option<u64> {
 /// Seeds among them that are silently wrong and known to be, and why: `docs/stability.md`, "What stays open".
 const KNOWN: &[(u64, &str)] = &[];
 
-/// Goal: of 200 scenes none is silently wrong but those that are known to be, and these still are.
+/// Seeds beyond these that were silently wrong: half the cells agreed by accident (20159, 20272, 21102), mesh and tolerance of the companion
+/// cancelled (20290), a load vanished on both meshes (254, 20792), quantities at rounding level were judged (20316, 20362, 20536).
+const FORMERLY_SILENT: [u64; 9] = [254, 20159, 20272, 20290, 20316, 20362, 20536, 20792, 21102];
+
+/// Goal: of 200 scenes none is silently wrong but those that are known to be, and these still are. Those that were silently wrong are right
+/// or warned of.
 #[test]
 fn no_scene_is_silently_wrong() {
-    let lines = tally::run(Kind::Extreme, 1, SCENES, false);
+    let mut lines = tally::run(Kind::Extreme, 1, SCENES, false);
+    let formerly = FORMERLY_SILENT.map(|seed| tally::run(Kind::Extreme, seed, 1, false));
+    lines.extend(formerly.into_iter().flatten());
     println!("{}", tally::table(&lines));
     let known = |seed: &u64| KNOWN.iter().any(|(known, _)| known == seed);
     let silent = tally::silent(&lines);

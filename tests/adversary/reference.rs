@@ -4,7 +4,7 @@
 //! order. Its error is counted as twice the change that this makes, all that errors of first order would leave, plus twice what
 //! another method of another order at ten times the tolerance changes.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use serde_json::Value;
 use slcbeam::case::Case;
@@ -18,8 +18,10 @@ use crate::run::{Figures, Work, exact, figures, finished};
 pub struct Reference {
     /// Value and error of every figure.
     pub figures: BTreeMap<String, BTreeMap<String, (f64, f64)>>,
-    /// Largest figure of a quantity, or what is nothing beside others.
+    /// Largest figure of a quantity, at least its rounding level.
     pub sizes: BTreeMap<String, f64>,
+    /// Quantities whose largest figure is below their rounding level.
+    pub negligible: BTreeSet<String>,
     /// Cells a segment of the finer mesh.
     pub cells: usize,
 }
@@ -143,7 +145,7 @@ fn limit(case: &Case, [check, coarse, fine]: [&Summary; 3], cells: usize) -> Ref
 /// The limit of two meshes; what time leaves is the difference of the first two.
 fn limit_with_time(case: &Case, time: [&Summary; 2], meshes: [&Summary; 2], cells: usize) -> Reference {
     let [check, same, coarse, fine] = [time[0], time[1], meshes[0], meshes[1]].map(figures);
-    let sizes = sizes(case, meshes[1], &fine);
+    let (sizes, negligible) = sizes(case, meshes[1], &fine);
     let at = |from: &Figures, quantity: &str, figure: &str| from.get(quantity).and_then(|q| q.get(figure)).copied();
     let mut all = BTreeMap::new();
     for (quantity, of) in &fine {
@@ -169,13 +171,14 @@ fn limit_with_time(case: &Case, time: [&Summary; 2], meshes: [&Summary; 2], cell
     Reference {
         figures: all,
         sizes,
+        negligible,
         cells,
     }
 }
 
-/// Largest figures, from below by what is nothing: 1e-9 of the length, 1e-6 of others of the same unit.
-fn sizes(case: &Case, summary: &Summary, figures: &Figures) -> BTreeMap<String, f64> {
-    let largest = |of: &BTreeMap<String, f64>| of.values().fold(0.0_f64, |m, v| m.max(v.abs()));
+/// Largest figures, at least their rounding levels: 1e-9 of the length, 1e-6 of others of the same unit. The second result has quantities
+/// below their level.
+fn sizes(case: &Case, summary: &Summary, figures: &Figures) -> (BTreeMap<String, f64>, BTreeSet<String>) {
     let unit = |name: &str| name.rsplit('_').next().unwrap_or_default().to_owned();
     let length = case.beam.length_m;
     let most = |wanted: &str| {
@@ -194,10 +197,22 @@ fn sizes(case: &Case, summary: &Summary, figures: &Figures) -> BTreeMap<String, 
         _ => 1e-3,
     };
     let of = |(name, of): (&String, &BTreeMap<String, f64>)| (name.clone(), largest(of).max(floor(name)));
-    figures.iter().map(of).collect()
+    let below = |(name, of): &(&String, &BTreeMap<String, f64>)| largest(of) < floor(name);
+    let negligible = figures.iter().filter(below).map(|(name, _)| name.clone());
+    (figures.iter().map(of).collect(), negligible.collect())
+}
+
+fn largest(figures: &BTreeMap<String, f64>) -> f64 {
+    figures.values().fold(0.0, |most, x| most.max(x.abs()))
 }
 
 impl Reference {
+    /// True if a quantity is below its rounding level here and in other figures: `docs/accuracy.md` excludes it from error bars.
+    pub fn is_negligible(&self, quantity: &str, figures: &Figures) -> bool {
+        let other = figures.get(quantity).map_or(0.0, largest);
+        self.negligible.contains(quantity) && other < self.sizes[quantity]
+    }
+
     /// Largest relative error of the reference itself, over some quantities.
     pub fn worst(&self, quantities: impl Fn(&str) -> bool) -> f64 {
         let of = |(name, all): (&String, &BTreeMap<String, (f64, f64)>)| {

@@ -1,9 +1,9 @@
 //! Which setting makes an error that is large, and the warning.
 //!
-//! Each setting is changed by itself: the cells of the beam and those of a bladder to those of the companion, a tenth of the tolerance, each
+//! Each setting is changed by itself: twice the cells of the beam, the cells of a bladder in the companion, a tenth of the tolerance, each
 //! effect that is left out. These runs are made only where an error is above the limit and the run is small. Changes may cancel in the
 //! companion, and its looser tolerance may err more than the run: an error is at least the sum over all causes, and at most
-//! [`TRUSTED`] times that.
+//! [`TRUSTED`] times that. Two coarse meshes may agree by accident, so that the beam is refined here.
 
 use std::collections::BTreeMap;
 
@@ -65,22 +65,27 @@ impl Causes {
 }
 
 /// Adds to a summary the causes of errors that are larger than an accuracy; or, without one, of those above the limit, with a warning.
+///
+/// Errors of energies are at least the residual of a balance: that of the run where an accuracy is asked for, otherwise that of the
+/// companion, whose looser tolerance may hide an error of the mesh.
 pub(super) fn attribute(
     case: &Case,
     summary: &mut Summary,
+    of: &Summary,
     accuracy: Option<&Accurate>,
     recorder: &mut dyn Recorder,
 ) -> Result<()> {
     let floors = &RoundingScales::from_case(case)?;
     let least = least(accuracy);
-    let cells = summary.companion.as_ref().map_or([0; 2], |companion| {
+    let mut cells = summary.companion.as_ref().map_or([0; 2], |companion| {
         [companion.cells_per_segment, companion.cells_per_bladder]
     });
-    if accuracy.is_some() {
-        let mut errors = std::mem::take(&mut summary.errors);
-        error::raise_to_balance(summary, &mut errors, floors);
-        summary.errors = errors;
+    if accuracy.is_none() {
+        cells[0] = cells[0].max(2 * case.mesh.cells_per_segment);
     }
+    let mut errors = std::mem::take(&mut summary.errors);
+    error::raise_to_balance(if accuracy.is_some() { summary } else { of }, &mut errors, floors);
+    summary.errors = errors;
     let mut found = accuracy.map_or_else(BTreeMap::new, |accuracy| believed(accuracy, summary, floors));
     if accuracy.is_some() && !tolerance_binds(summary) && !found.contains_key(&ErrorCause::TimeSteps) {
         changes(case, summary, cells, vec![ErrorCause::TimeSteps], &mut found, recorder)?;

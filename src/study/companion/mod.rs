@@ -14,8 +14,8 @@
 //! With `x` a figure of the run and `x'` that of the companion, the error is the whole difference `|x - x'|`:
 //!
 //! ```text
-//! beam mesh    K/2 cells     e(K/2) - e(K) = 3 e(K) at second order;   2K to 4K where K cells leave out part of a load or of the start
-//! fluid mesh   2G cells      boundary layers in bladders, which coarser meshes do not show at all;   up to 4G where these are thin
+//! beam mesh    K/2 cells     e(K/2) - e(K) = 3 e(K) at second order;   2K to 4K - 1 where K cells leave out part of a load or of the start
+//! fluid mesh   2G cells      boundary layers in bladders, which coarser meshes do not show at all;   up to 4G - 1 where these are thin
 //! time         10 rtol       e(10 rtol) - e(rtol), several times e(rtol)
 //! effects      all           what the effects that are left out change
 //! ```
@@ -204,7 +204,7 @@ fn accompany(
                     .retain(|warning| !expected.contains(warning) || forces(warning));
             }
             summary.companion = Some(companion);
-            attribute(case, summary, accuracy, recorder)?;
+            attribute(case, summary, &of, accuracy, recorder)?;
             recorder.companion(&rows)?;
         }
         Err(reason) => {

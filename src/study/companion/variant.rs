@@ -14,7 +14,8 @@ use crate::study::refine::has_cells_along_bladders;
 /// Loosest and tightest tolerance of a variant.
 const TOLERANCES: [f64; 2] = [1e-13, 0.1];
 
-/// Largest refinement of a mesh that does not resolve what the case gives.
+/// Largest refinement of a mesh that does not resolve what the case gives, less one cell: waves that vanish on a mesh may also vanish on
+/// its multiples.
 const FINEST: usize = 4;
 
 /// Cells a segment of a fourth-order mesh that are compared with twice as many: it may share a false peak with an even coarser one.
@@ -133,7 +134,7 @@ impl Variant {
     fn discretized(case: &Case, added: Vec<Effect>) -> Result<Self> {
         let mut case = recorded_alike(case);
         let unresolved = resolution::unresolved(&case, &System::new(&case)?);
-        let finer = |setting: &str, cells: usize| resolution::finer(&unresolved, setting, cells, FINEST * cells);
+        let finer = |setting: &str, cells: usize| resolution::finer(&unresolved, setting, cells, FINEST * cells - 1);
         case.solver.rtol = (10.0 * case.solver.rtol).min(TOLERANCES[1]);
         case.solver.max_step_s = case.solver.max_step_s.map(|step| 2.0 * step);
         let [along, in_bladders] = [case.mesh.cells_per_segment, case.mesh.cells_per_bladder];
