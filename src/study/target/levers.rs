@@ -19,10 +19,6 @@ const FILL: f64 = 0.7;
 const SHARE: f64 = 0.25;
 /// Largest refinement at once: doublings of the cells of a segment, of those of a bladder, and decades of the tolerance.
 const FARTHEST: [i32; 3] = [2, 3, 3];
-/// The same of a whole search. A quantity whose error they are not expected to bring below the accuracy, at so many times the largest work,
-/// is not pursued.
-const MOST: [i32; 3] = [5, 5, 6];
-const HOPED: f64 = 2.0;
 /// Decades that are added to a tighter tolerance where ten times the tolerance takes at least so many times the steps: loads and outputs
 /// decide on the steps there.
 const IDLE: i32 = 2;
@@ -42,7 +38,7 @@ const PREFERRED: f64 = 0.8;
 const PATIENCE: f64 = 4.0;
 /// Ratio of an error to the smallest before above which that smallest one is discarded.
 const SHOWN: f64 = 2.0;
-/// Error above which its size is unreliable; larger errors count as this one.
+/// Error above which its size is unreliable; larger errors count as this one in sums.
 const SATURATED: f64 = 0.3;
 /// Largest work (steps times unknowns) that a refinement is expected to do: so many times that of the first run, and so much.
 const LARGEST_WORK: (f64, f64) = (15.0, 3e6);
@@ -96,19 +92,12 @@ impl Levers {
         let now = (summary.solver.steps as f64, -case.solver.rtol.log10());
         let per_decade = match self.before.replace(now) {
             Some(before) if now.1 > before.1 + 0.5 => (now.0 / before.0).powf(1.0 / (now.1 - before.1)),
-            _ => now.0 / companion_steps(summary).max(1.0),
+            _ => WORK[2],
         };
-        let per_decade = per_decade.max(WORK[2]);
-        let affordable = (LARGEST_WORK.0 * first + LARGEST_WORK.1) / work;
-        let mut wanted = parts(summary, floors, &large);
-        wanted.retain(|parts| {
-            self.refinement(case, &[*parts], MOST, [HOPED * affordable, per_decade])
-                .1
-                <= 1.0 / FILL
-        });
+        let wanted = parts(summary, floors, &large);
         let more = effects::needed(case, summary, SHARE * self.asked)?;
-        let budget = affordable.min(AT_ONCE);
-        let ([beam, fluid, decades], _) = self.refinement(case, &wanted, FARTHEST, [budget, per_decade]);
+        let budget = ((LARGEST_WORK.0 * first + LARGEST_WORK.1) / work).min(AT_ONCE);
+        let [beam, fluid, decades] = self.refinement(case, &wanted, budget, per_decade.max(WORK[2]));
         if [beam, fluid, decades] == [0; 3] && more.is_none() {
             return Ok(None);
         }
@@ -129,22 +118,15 @@ impl Levers {
     /// replaces the best one, once per quantity.
     fn is_stuck(&mut self, name: &str, work: f64, error: f64) -> bool {
         let best = self.best.entry(name.into()).or_insert((work, error));
-        let falls = error <= best.1 * (work / best.0).powf(PAYS).min(1.0);
+        let falls = error <= best.1 * (work / best.0).powf(PAYS).min(1.0) || SATURATED < error && error < best.1;
         if falls || error > SHOWN * best.1 && self.shown.insert(name.into()) {
             *best = (work, error);
         }
         work > PATIENCE * best.0
     }
 
-    /// Doublings of the beam's cells, of a bladder's cells, and decades: the cheapest that should do, or those that come nearest; with the
-    /// largest error that they should leave, over the part of the accuracy that they aim at. A decade multiplies the work.
-    fn refinement(
-        &self,
-        case: &Case,
-        wanted: &[[f64; 3]],
-        farthest: [i32; 3],
-        [budget, decade]: [f64; 2],
-    ) -> ([i32; 3], f64) {
+    /// Doublings of the beam's cells, of a bladder's cells, and decades: the cheapest that should do, or those that come nearest.
+    fn refinement(&self, case: &Case, wanted: &[[f64; 3]], budget: f64, decade: f64) -> [i32; 3] {
         let ratios =
             [ErrorCause::BeamMesh, ErrorCause::FluidMesh, ErrorCause::TimeSteps].map(|cause| cause.falls(case));
         let left = |finer: [i32; 3]| {
@@ -159,9 +141,9 @@ impl Levers {
                 && now + f64::from(decades) <= f64::from(TIGHTEST) + 0.5
         };
         let mut best = ([0; 3], left([0; 3]), 1.0);
-        for beam in 0..=farthest[0] {
-            for fluid in 0..=farthest[1] {
-                for decades in 0..=farthest[2] {
+        for beam in 0..=FARTHEST[0] {
+            for fluid in 0..=FARTHEST[1] {
+                for decades in 0..=FARTHEST[2] {
                     let finer = [beam, fluid, decades];
                     let (fill, cost) = (left(finer), cost(finer));
                     let better = if fill <= 1.0 {
@@ -175,7 +157,7 @@ impl Levers {
                 }
             }
         }
-        (best.0, best.1)
+        best.0
     }
 }
 
