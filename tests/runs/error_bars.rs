@@ -1,5 +1,6 @@
 //! Error bars of a run compared with its true errors, from a run on finer meshes at a tighter tolerance.
 
+use std::collections::BTreeMap;
 use std::path::Path;
 
 use slcbeam::case::schema::{Companion, Effect};
@@ -278,6 +279,23 @@ fn bars_cover_changes_that_cancel() {
     let bar = summary.error("tip_u3_m", "final").expect("a bar");
     println!("{value:.3e} ± {bar:.1e}, right -4.00e-5");
     assert!(3.0 * bar > (value + 4.0e-5).abs());
+}
+
+/// Goal: figures of an efficiency that differ in size have errors in proportion: the window of a harvest next to nothing has 28 beside 0.95.
+#[test]
+fn efficiencies_share_relative_errors() {
+    let figures = |last: f64, window: f64| {
+        let of = BTreeMap::from([("final".to_owned(), last), ("window".to_owned(), window)]);
+        BTreeMap::from([("efficiency".to_owned(), of)])
+    };
+    let errors = &companion::error::differences(&figures(0.95, 28.0), &figures(0.95, 27.72))["efficiency"];
+    assert!((errors["window"] - 0.28).abs() < 1e-9, "{errors:?}");
+    assert!((errors["final"] - 0.3 * 0.01 * 0.95).abs() < 1e-9, "{errors:?}");
+    let none = &companion::error::differences(&figures(0.0, 2.0), &figures(0.0, 1.9))["efficiency"];
+    assert!(
+        none["final"].is_finite() && (none["window"] - 0.1).abs() < 1e-9,
+        "{none:?}"
+    );
 }
 
 /// Source: runs with 16, 64 and 256 cells per bladder: 1.36, 1.87 and 1.88 uJ harvested instead of 32 nJ. Goal: the warning names an energy

@@ -359,3 +359,34 @@ fn sines_of_whole_cycles_last() {
     let [_, lasts] = signal("-0.7").lasting(END, END);
     assert!((lasts - 0.7).abs() < 1e-12, "{lasts}");
 }
+
+/// Goal: bounds that a thread has found before are those of a new search, however many signals, ends and held values lie between.
+#[test]
+fn bounds_found_before_are_those_of_a_search() {
+    let signals: Vec<Signal> = (1..=50)
+        .map(|k| {
+            signal(&format!(
+                r#"{{"sine":{{"amplitude":{k},"frequency_hz":0.{k},"ramp_cycles":1}}}}"#
+            ))
+        })
+        .collect();
+    let all = || -> Vec<_> {
+        let of = |s: &Signal, end: f64| {
+            let excited = [0.0, 0.5].map(|held| s.excitation(end, held).above(3.0));
+            (s.largest(end), s.reaches(end), s.impulse(end), excited)
+        };
+        let twice = |s: &Signal, end: f64| {
+            let found = of(s, end);
+            assert_eq!(found, of(s, end));
+            found
+        };
+        signals
+            .iter()
+            .flat_map(|s| [0.5, END].map(|end| twice(s, end)))
+            .collect()
+    };
+    let first = all();
+    let elsewhere = std::thread::scope(|scope| scope.spawn(all).join().expect("a search"));
+    assert_eq!(first, elsewhere);
+    assert_ne!(first[0], first[1]);
+}

@@ -27,6 +27,8 @@ const RECENT: f64 = 0.1;
 const FEWEST: usize = 16;
 /// Number of digits of a half width.
 const DIGITS: i32 = 3;
+/// Half widths that are no rounding errors.
+const NUMBERS: std::ops::Range<f64> = 1e-280..1e280;
 
 /// Half widths of the error bands of history columns.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -177,12 +179,17 @@ fn half_widths(times: &[f64], apart: &[f64], recent: f64, bars: &ColumnBars) -> 
 
 /// Rounds up to a few digits.
 fn rounded_up(width: f64) -> f64 {
-    if width <= 0.0 || !width.is_finite() {
+    if !NUMBERS.contains(&width) {
         return 0.0;
     }
     let power = width.log10().floor() as i32 - DIGITS + 1;
-    let digits = (width * 10_f64.powi(-power)).ceil();
-    format!("{digits}e{power}").parse().unwrap_or(width)
+    let scale = 10_f64.powi(power.abs());
+    // powers of ten are exact up to the 22nd, so that the result has few digits
+    if power < 0 {
+        (width * scale).ceil() / scale
+    } else {
+        (width / scale).ceil() * scale
+    }
 }
 
 #[cfg(test)]
@@ -209,5 +216,6 @@ mod tests {
         assert!(widths[1000] >= 8.0 && widths.iter().all(|width| *width < 10.1));
         assert_eq!(rounded_up(1.2341e-7), 1.24e-7);
         assert_eq!(rounded_up(9.991e5), 1e6);
+        assert_eq!([0.0, 1e-300, f64::INFINITY, f64::NAN].map(rounded_up), [0.0; 4]);
     }
 }
