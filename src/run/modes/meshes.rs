@@ -308,7 +308,7 @@ pub fn warning(found: &Modes) -> Option<String> {
             _ if mode.lacks_beam_error() || found.bladders_compared && mode.by_mesh.bladders.is_none() => {
                 unknown[0].push((k + 1).to_string());
             }
-            _ if !found.left_out.is_empty() && mode.by_mesh.effects.is_none() => unknown[1].push((k + 1).to_string()),
+            _ if lacks_effects_error(found, mode) => unknown[1].push((k + 1).to_string()),
             _ => {}
         }
     }
@@ -338,6 +338,12 @@ pub fn warning(found: &Modes) -> Option<String> {
     let remedies: Vec<String> = remedies.into_iter().flatten().collect();
     (!sentences.is_empty())
         .then(|| Code::ErrorEstimate.warning(format!("estimate: {}. {}", sentences.join("; "), remedies.join(" "))))
+}
+
+/// True if the error of a mode by effects left out is not known. Decays are not compared with unsteady friction, which has decays of its own.
+fn lacks_effects_error(found: &Modes, mode: &Mode) -> bool {
+    let compared = mode.kind.swings() || !found.left_out.contains(&Effect::UnsteadyFriction);
+    compared && !found.left_out.is_empty() && mode.by_mesh.effects.is_none()
 }
 
 /// Text of the largest errors: number of the mode, error, name of the figure.
