@@ -79,6 +79,7 @@ fn a_run_fills_a_result_folder() {
         "case.json",
         "deflection.svg",
         "energy.svg",
+        "errors.csv",
         "fields.npz",
         "history.csv",
         "history.svg",
