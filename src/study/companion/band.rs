@@ -184,11 +184,12 @@ fn rounded_up(width: f64) -> f64 {
     }
     let power = width.log10().floor() as i32 - DIGITS + 1;
     let scale = 10_f64.powi(power.abs());
-    // powers of ten are exact up to the 22nd, so that the result has few digits
-    if power < 0 {
-        (width * scale).ceil() / scale
-    } else {
-        (width / scale).ceil() * scale
+    let digits = if power < 0 { width * scale } else { width / scale }.ceil();
+    match power {
+        -22..0 => digits / scale,
+        0..=22 => digits * scale,
+        // further powers of ten are not exact
+        _ => format!("{digits}e{power}").parse().unwrap_or(width),
     }
 }
 
@@ -216,6 +217,7 @@ mod tests {
         assert!(widths[1000] >= 8.0 && widths.iter().all(|width| *width < 10.1));
         assert_eq!(rounded_up(1.2341e-7), 1.24e-7);
         assert_eq!(rounded_up(9.991e5), 1e6);
+        assert_eq!([2.7351e-36, 8.781e-62].map(rounded_up), [2.74e-36, 8.79e-62]);
         assert_eq!([0.0, 1e-300, f64::INFINITY, f64::NAN].map(rounded_up), [0.0; 4]);
     }
 }
