@@ -360,7 +360,9 @@ impl Recorder for FolderRecorder {
     }
 
     fn history(&mut self, row: &[f64]) -> Result<()> {
-        self.compared.run.push(row);
+        if !self.lean {
+            self.compared.run.push(row);
+        }
         self.open.as_mut().map_or(Ok(()), |open| open.history(row))
     }
 

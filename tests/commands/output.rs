@@ -555,6 +555,27 @@ fn pressure_curves_break_between_networks() {
     assert_eq!(lines(&plot::pressure::draw(&told).expect("a picture"), "#0B246B"), 1);
 }
 
+/// Goal: the subtitle names error bands only where one is drawn; a line hides a narrow one.
+#[test]
+fn a_picture_names_its_error_bands() {
+    let history = |width: f64| plot::HistoryPlot {
+        case: "one".into(),
+        curves: vec![plot::PlottedCurve {
+            name: "tip_u1".into(),
+            unit: "m".into(),
+            points: vec![(0.0, 0.0), (1.0, 1.0)],
+            widths: vec![(0.0, 0.0), (1.0, width)],
+        }],
+    };
+    let named = |width: f64| {
+        let svg = plot::history::draw(&history(width)).expect("a picture");
+        let [shade, subtitle] = ["fill-opacity", "bands: estimated error"].map(|part| svg.contains(part));
+        assert_eq!(shade, subtitle, "{width}");
+        subtitle
+    };
+    assert!(named(0.1) && !named(1e-4) && !named(0.0));
+}
+
 #[test]
 fn absent_data_make_no_picture() {
     assert_eq!(plot::history::draw(&plot::HistoryPlot::default()), None);

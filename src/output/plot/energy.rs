@@ -3,7 +3,7 @@
 use super::canvas::LineStyle;
 use super::colour::PALETTE;
 use super::picture::{Panel, Picture, PictureAxis, PictureSeries};
-use super::{BAND, PlottedCurve, error_bands, times_of};
+use super::{PlottedCurve, error_bands, times_of};
 use crate::discrete::quantities::{Group, Observable};
 
 /// Entries of the ledger over time.
@@ -67,16 +67,12 @@ pub fn draw(data: &Energy) -> Option<String> {
             vec![line.named("what does not close,\nover the largest energy")],
         )
     });
-    let bands = match lines.iter().any(|curve| !curve.widths.is_empty()) {
-        true => format!("; bands: {BAND}"),
-        false => String::new(),
-    };
-    let about = format!("stored energies (solid), cumulative works and losses (dashed){bands}");
     Picture::stacked(
         format!("{} · energy", data.case),
-        about,
+        "stored energies (solid), cumulative works and losses (dashed)",
         [energies].into_iter().chain(residual),
     )
+    .with_bands_named()
     .svg()
 }
 

@@ -3,7 +3,7 @@
 use super::canvas::LineStyle;
 use super::colour::PALETTE;
 use super::picture::{Panel, Picture, PictureAxis, PictureSeries};
-use super::{BAND, PlottedCurve, error_bands, times_of};
+use super::{PlottedCurve, error_bands, times_of};
 use crate::discrete::quantities::{Group, Observable};
 
 /// Curves over time.
@@ -59,12 +59,13 @@ pub fn draw(data: &HistoryPlot) -> Option<String> {
         series.extend(curves.iter().enumerate().map(line));
         Panel::new((640.0, 112.0), x.clone(), y, series)
     });
-    let banded = data.curves.iter().any(|curve| !curve.widths.is_empty());
-    let about = match banded {
-        true => format!("quantities over the whole run; bands: {BAND}"),
-        false => "quantities over the whole run".into(),
-    };
-    Picture::stacked(format!("{} · history", data.case), about, panels).svg()
+    Picture::stacked(
+        format!("{} · history", data.case),
+        "quantities over the whole run",
+        panels,
+    )
+    .with_bands_named()
+    .svg()
 }
 
 /// Curves of each panel; omits powers that are zero throughout.

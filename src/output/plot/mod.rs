@@ -64,9 +64,6 @@ pub struct PlottedCurve {
 /// Half width of a band, relative to the range of its curves, below which the line hides it.
 const HIDDEN: f64 = 3e-3;
 
-/// Name of an error band in a legend.
-const BAND: &str = "estimated error";
-
 /// Error bands of curves in one panel, each in its color, without those that a line hides; `floor` is the smallest half range of the axis.
 fn error_bands<'a>(curves: impl Iterator<Item = (&'a PlottedCurve, Colour)> + Clone, floor: f64) -> Vec<PictureSeries> {
     let values = curves.clone().flat_map(|(curve, _)| curve.points.iter().map(|p| p.1));

@@ -123,6 +123,16 @@ impl Picture {
             rows: panels.into_iter().map(|panel| vec![panel]).collect(),
         }
     }
+
+    /// The picture with error bands named in its subtitle, if there are any.
+    #[must_use]
+    pub fn with_bands_named(mut self) -> Self {
+        let mut series = self.rows.iter().flatten().flat_map(|panel| &panel.series);
+        if series.any(|one| matches!(one.kind, SeriesKind::Shade(..))) {
+            self.about += "; bands: estimated error";
+        }
+        self
+    }
 }
 
 impl Panel {
