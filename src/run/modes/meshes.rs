@@ -118,9 +118,9 @@ const SAME: f64 = 0.8;
 fn along_the_beam(about: Result<Linearised>, plan: &ModeOptions, finer: bool, found: &mut Modes) {
     let fourth = found.about.system().mesh.fourth;
     // a mesh of few cells has another order
-    if about.as_ref().is_ok_and(|other| other.system().mesh.fourth != fourth) {
+    let Some(about) = about.ok().filter(|other| other.system().mesh.fourth == fourth) else {
         return;
-    }
+    };
     let every_other = |modes: &[Mode]| -> Vec<Mode> {
         let coarser = |mode: &Mode| Mode {
             shape: mode.shape.on_every_other_node(),
@@ -128,7 +128,7 @@ fn along_the_beam(about: Result<Linearised>, plan: &ModeOptions, finer: bool, fo
         };
         modes.iter().map(coarser).collect()
     };
-    let Some(others) = elsewhere(about, plan, found) else {
+    let Some(others) = elsewhere(&about, plan, found) else {
         return;
     };
     let (length, modes) = (found.about.system().model.length, &found.modes);
@@ -160,7 +160,7 @@ fn along_the_beam(about: Result<Linearised>, plan: &ModeOptions, finer: bool, fo
 }
 
 fn along_bladders(about: Result<Linearised>, plan: &ModeOptions, found: &mut Modes) {
-    let Some(others) = elsewhere(about, plan, found) else {
+    let Some(others) = about.ok().and_then(|about| elsewhere(&about, plan, found)) else {
         return;
     };
     for (k, j, _) in pairs(&found.modes, &others, found.about.system().model.length) {
@@ -175,47 +175,38 @@ pub fn compare_effects(full: &Case, at_rest_under: Option<f64>, plan: &ModeOptio
     let Ok(about) = about_state(full, found.about.at, at_rest_under) else {
         return;
     };
-    let length = found.about.system().model.length;
-    let mut tally = Tally::default();
-    let mut compare = |found: &mut Modes, only: Option<usize>, plan: &ModeOptions| {
-        let plan = ModeOptions {
-            count: plan.count + MORE,
-            ..*plan
-        };
-        let others = search(&about, FluidBehavior::Flowing, &plan, &mut tally).unwrap_or_default();
-        for (k, j, likeness) in pairs(&found.modes, &others, length) {
-            let mode = &mut found.modes[k];
-            let same = !mode.kind.swings() || likeness > SAME;
-            if same && only.is_none_or(|only| only == k) {
-                mode.by_mesh.effects = Some(others[j].s - mode.s);
-            }
-        }
-        tally.factorizations
-    };
+    let most = (1 + MOST_WORK) * found.factorizations;
     if !found.left_out.contains(&Effect::UnsteadyFriction) {
-        compare(found, None, plan);
+        with_effects(&about, plan, None, found);
     }
     let lacks = |mode: &Mode| mode.kind.swings() && mode.by_mesh.effects.is_none();
     let mut open: Vec<usize> = (0..found.modes.len()).filter(|&k| lacks(&found.modes[k])).collect();
     open.sort_by(|a, b| found.modes[*a].s.im.total_cmp(&found.modes[*b].s.im));
     for k in open {
-        let near_hz = found.modes[k].s.im / std::f64::consts::TAU;
-        let count = 1;
-        if compare(
-            found,
-            Some(k),
-            &ModeOptions {
-                count,
-                near_hz,
-                ..*plan
-            },
-        ) > MOST_WORK * found.factorizations
-        {
+        let near = ModeOptions {
+            count: 1,
+            near_hz: found.modes[k].s.im / std::f64::consts::TAU,
+            ..*plan
+        };
+        with_effects(&about, &near, Some(k), found);
+        if found.factorizations > most {
             break;
         }
     }
-    found.factorizations += tally.factorizations;
-    found.solves += tally.solves;
+}
+
+/// Compares all modes, or only one, with those about a state with all effects.
+fn with_effects(about: &Linearised, plan: &ModeOptions, only: Option<usize>, found: &mut Modes) {
+    let Some(others) = elsewhere(about, plan, found) else {
+        return;
+    };
+    for (k, j, likeness) in pairs(&found.modes, &others, found.about.system().model.length) {
+        let mode = &mut found.modes[k];
+        let same = !mode.kind.swings() || likeness > SAME;
+        if same && only.is_none_or(|only| only == k) {
+            mode.by_mesh.effects = Some(others[j].s - mode.s);
+        }
+    }
 }
 
 /// Largest number of factorizations with all effects over that of the modes.
@@ -224,20 +215,19 @@ const MOST_WORK: u64 = 3;
 /// Number of additional modes, since the last ones may change their order.
 const MORE: usize = 4;
 
-/// Modes about a state on another mesh.
-fn elsewhere(about: Result<Linearised>, plan: &ModeOptions, found: &mut Modes) -> Option<Vec<Mode>> {
-    let about = about.ok()?;
+/// Modes about a state on another mesh or with other effects.
+fn elsewhere(about: &Linearised, plan: &ModeOptions, found: &mut Modes) -> Option<Vec<Mode>> {
     let mut tally = Tally::default();
     let others = [MORE, 0].into_iter().find_map(|more| {
         let plan = ModeOptions {
             count: plan.count + more,
             ..*plan
         };
-        search(&about, FluidBehavior::Flowing, &plan, &mut tally).ok()
-    })?;
+        search(about, FluidBehavior::Flowing, &plan, &mut tally).ok()
+    });
     found.factorizations += tally.factorizations;
     found.solves += tally.solves;
-    Some(others)
+    others
 }
 
 /// Pairs of modes on two meshes with the likeness of their shapes; length of the beam [m].
