@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 
+use crate::discrete::quantities::Interest;
 use crate::run::summary::{Figures, Quantity, Summary, has_unit_of_quantity, largest_error};
 use crate::study::significant::{RoundingScales, counted, counted_of_ports, counted_of_probes};
 
@@ -59,18 +60,13 @@ pub fn differences(run: &Figures, companion: &Figures) -> Figures {
         let of = |figure: &String| Some((figure.clone(), apart(unsigned(figure))?));
         let mut errors: BTreeMap<String, f64> = own.keys().filter_map(of).collect();
         // efficiencies of the run and of the window have unlike denominators
-        let size = |figure: &str| match name.as_str() {
-            "efficiency" => own
-                .get(figure)
-                .map(|value| value.abs())
-                .filter(|size| *size > 0.0)
-                .unwrap_or(1.0),
+        let of_efficiency = name == Interest::Efficiency.name();
+        let size = |figure: &str| match own.get(figure) {
+            Some(value) if of_efficiency && *value != 0.0 => value.abs(),
             _ => 1.0,
         };
-        let in_sizes = errors
-            .iter()
-            .map(|(figure, error)| (figure.clone(), error / size(figure)));
-        let largest = largest_error(&in_sizes.collect()).unwrap_or(0.0);
+        let alike = errors.iter().filter(|(figure, _)| has_unit_of_quantity(figure));
+        let largest = alike.map(|(figure, error)| error / size(figure)).fold(0.0, f64::max);
         for (figure, error) in errors.iter_mut().filter(|(figure, _)| has_unit_of_quantity(figure)) {
             *error = error.max(SHARED * largest * size(figure));
         }
