@@ -244,7 +244,7 @@ fn bars_cover_a_load_that_the_mesh_does_not_see() {
         println!("{:?} {:?}", summary.errors["tip_u1_m"], summary.warnings);
         assert!(summary.error("tip_u1_m", "max_abs") > Some(least));
         assert!(warning(&summary, "W008").is_none() && warning(&summary, "W020").is_none());
-        assert!(warning(&summary, "W021").is_some_and(|told| told.contains("tip_u1_m")));
+        assert!(warning(&summary, "W021").is_some_and(|text| text.contains("tip_u1_m")));
     }
 }
 
@@ -266,8 +266,8 @@ fn bars_cover_two_meshes_that_agree_by_accident() {
     let bar = summary.error("midspan_u1_m", "max_abs").expect("a bar");
     println!("{value:.4e} ± {bar:.1e}, right 1.1346e-2");
     assert!((value - 1.1346e-2).abs() > 5e-4 && bar > 5e-4, "{value:e} ± {bar:e}");
-    let told = warning(&summary, "W021").expect("a warning");
-    assert!(told.contains("midspan_u1_m"), "{told}");
+    let text = warning(&summary, "W021").expect("a warning");
+    assert!(text.contains("midspan_u1_m"), "{text}");
 }
 
 /// Source: a run with 16 cells per segment and per bladder at rtol 1e-7: -40.0 um. Goal: refinements of the two meshes cancel in the
