@@ -120,7 +120,7 @@ fn two_signals_at_once_are_one_request() {
     let run = program()
         .arg("--out")
         .arg(&out)
-        .args(["--set", "/time/end_s=1000"])
+        .args(["--set", "/time/end_s=100"])
         .spawn()
         .unwrap();
     let written = || fs::metadata(out.join("history.csv")).map_or(0, |file| file.len());
@@ -167,7 +167,7 @@ fn spent(process: u32) -> (String, f64) {
 /// Commands that compute for minutes; what all of them have in common is left out.
 #[cfg(target_os = "linux")]
 const LONG: [&str; 26] = [
-    "run cases/bend-wet.json --set /time/end_s=1000 --out",
+    "run cases/bend-wet.json --set /time/end_s=100 --out",
     "run cases/dry-cantilever.json --set /mesh/segments=80 --set /mesh/cells_per_segment=400 --out",
     "run cases/bend-wet.json --accuracy 1e-6 --set /time/end_s=100 --out",
     "run cases/bend-wet.json --uncertain /beam/young_modulus_pa=normal:2e6:1e5 --samples 4000 --out",
@@ -184,11 +184,11 @@ const LONG: [&str; 26] = [
     "floquet cases/valves-half.json --map frequency,amplitude --points 100,100 --out",
     "study cases/bend-wet.json --budget 300s --out",
     "effects cases/bend-wet.json --budget 300s --repeats 100 --out",
-    "sweep cases/bend-wet.json --vary /beam/length_m=0.1,0.11,0.12 --set /time/end_s=1000 --out",
+    "sweep cases/bend-wet.json --vary /beam/length_m=0.1,0.11,0.12 --set /time/end_s=100 --out",
     "sweep cases/bend-wet.json --command modes --vary /beam/length_m=0.1,0.11 --set /mesh/cells_per_segment=200 --jobs 1 --out",
     "sweep cases/curl.json --command equilibrium --vary /beam/young_modulus_pa=1e6,1.1e6 --set /mesh/cells_per_segment=200 --out",
     "sweep cases/tour-harvester.json --command periodic --vary /beam/young_modulus_pa=1e6,1.1e6 --set /mesh/cells_per_segment=200 --out",
-    "optimize cases/bend-wet.json --vary /beam/length_m=0.09:0.12 --maximize tip_u1_m.max_abs --command run --set /time/end_s=1000 --out",
+    "optimize cases/bend-wet.json --vary /beam/length_m=0.09:0.12 --maximize tip_u1_m.max_abs --command run --set /time/end_s=100 --out",
     "optimize cases/bend-wet.json --vary /beam/length_m=0.09:0.12 --maximize tip_u1_m --command equilibrium --set /mesh/cells_per_segment=200 --out",
     "optimize cases/bend-dry.json --vary /beam/length_m=0.09:0.12 --maximize mode_1.frequency_hz --command modes --set /mesh/cells_per_segment=200 --out",
     "verify",
