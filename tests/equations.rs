@@ -289,6 +289,16 @@ const INDEX: &[(&str, &str, &str)] = &[
         "tests/laws/moment_curvature.rs",
         "a_moment_bends_a_cantilever_to_an_arc",
     ),
+    (
+        "[E92]",
+        "tests/modes/bands.rs",
+        "the_papers_beam_has_the_waves_of_its_transfer_matrix",
+    ),
+    (
+        "[E93]",
+        "tests/modes/bands.rs",
+        "a_bar_with_masses_has_the_gaps_of_its_closed_form",
+    ),
 ];
 
 #[test]

@@ -1,6 +1,7 @@
 //! The command line: one file per subcommand, and the only module that prints.
 
 mod arguments;
+mod bands;
 mod check;
 mod coefficients;
 mod compare;
@@ -170,6 +171,7 @@ fn act(command: &Command, began: Instant) -> Result<ExitCode> {
         Command::Compare(asked) => compare::compare(asked),
         Command::Modes(asked) => modes::modes(asked),
         Command::Response(asked) => response::response(asked),
+        Command::Bands(asked) => bands::bands(asked),
         Command::Export(asked) => export::export(asked),
         Command::Report(asked) => report::report(asked),
         Command::Mapping(asked) => mapping::mapping(asked),

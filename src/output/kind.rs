@@ -38,11 +38,13 @@ pub enum FolderKind {
     Optimum,
     /// `response`.
     Response,
+    /// `bands`.
+    Bands,
 }
 
 impl FolderKind {
     /// All kinds. A cycle precedes the run in its folder; designs precede other kinds with a `sweep.json`.
-    const ALL: [Self; 14] = [
+    const ALL: [Self; 15] = [
         Self::Cycle,
         Self::Designs,
         Self::Run,
@@ -57,6 +59,7 @@ impl FolderKind {
         Self::Sense,
         Self::Optimum,
         Self::Response,
+        Self::Bands,
     ];
 
     /// Name on the page, command, and identifying file.
@@ -76,6 +79,7 @@ impl FolderKind {
             Self::Sense => ["sense", "sense", "sense.json"],
             Self::Optimum => ["optimum", "optimize", "optimum.json"],
             Self::Response => ["response", "response", "response.json"],
+            Self::Bands => ["bands", "bands", "bands.json"],
         }
     }
 
@@ -116,6 +120,7 @@ impl FolderKind {
             ],
             Self::Fit => &["fit.csv", "fit.svg", "fitted-case.json"],
             Self::Response => &["response.csv", "response.svg"],
+            Self::Bands => &["bands.csv", "bands.svg"],
             Self::Optimum => &["designs.csv", "optimum.svg", "optimum-case.json"],
         };
         [self.sign()].into_iter().chain(own.iter().copied()).collect()

@@ -42,6 +42,7 @@
 
 pub mod accuracy;
 pub mod arrays;
+pub mod band_structure;
 pub mod bands;
 pub mod checkpoint;
 pub mod columns;

@@ -6,6 +6,7 @@
 //! | [`equilibrium`] | `equilibrium.json` |
 //! | [`modes`] | `modes.json` |
 //! | [`response`] | `response.json` |
+//! | [`bands`] | `bands.json` |
 //! | [`cycles`] | `floquet.json` and `cycle.json`, `map.json`, `sweep.json` |
 //! | [`studies`] | `study.json`, `effects.json`, output of `compare --json` |
 //! | [`sense`] | `sense.json` |
@@ -20,6 +21,7 @@
 //! A result is one object: the number of its format, its provenance, and the keys of its type. A number that is not finite is null. A key
 //! that is missing or has another type is an error, which names the place.
 
+pub mod bands;
 pub mod cycles;
 pub mod equilibrium;
 pub mod fit;

@@ -1,5 +1,6 @@
 //! Runs: they apply the solver to a model, emit events and print nothing.
 
+pub mod bands;
 pub mod checkpoint;
 pub mod cubic;
 pub mod drive;

@@ -2,6 +2,7 @@
 
 pub mod accuracy;
 pub mod analysis;
+pub mod bands;
 pub mod companion;
 pub mod compare;
 pub mod data;

@@ -1,5 +1,6 @@
 //! Modes of small motions: eigenvalues of pencils, physics of beams and bladders, and the command that prints them.
 
+mod bands;
 mod cli;
 mod common;
 mod fourth;

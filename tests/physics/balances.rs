@@ -158,6 +158,7 @@ fn balances_of_networks_close() {
         ("network-tour", 0.3),
         ("bladder-pump", 0.1),
         ("syringe-finger", 0.5),
+        ("metamaterial", 0.2),
         ("raised-tank", 1.0),
     ] {
         closes(name, end);

@@ -23,6 +23,7 @@ from importlib import metadata as _metadata
 from ._answer import Answer, Columns, read
 from ._case import Case, load, shipped
 from ._commands import (
+    bands,
     check,
     coefficients,
     compare,
@@ -71,6 +72,7 @@ __all__ = [
     "Table",
     "UnknownError",
     "UsageError",
+    "bands",
     "check",
     "coefficients",
     "compare",

@@ -206,7 +206,7 @@ class Answer(Mapping[str, Any]):
 
 
 #: Main result files of the commands; a file comes before those that may be beside it in a folder.
-MAIN = ("cycle", "sweep", "summary", "equilibrium", "modes", "study", "effects", "floquet", "map", "fit", "sense", "optimum", "response")
+MAIN = ("cycle", "sweep", "summary", "equilibrium", "modes", "study", "effects", "floquet", "map", "fit", "sense", "optimum", "response", "bands")
 
 
 def read(dir: str | os.PathLike[str]) -> Answer:

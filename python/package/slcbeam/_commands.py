@@ -184,6 +184,20 @@ def response(
     return _do("response", [case], out=out, progress=progress, options=options)
 
 
+def bands(case: CaseLike, *, out: Place = None, progress: bool = False, **options: Any) -> Answer:
+    """Computes waves of a beam whose cells repeat: wave numbers, attenuation and gaps (``slcbeam bands``).
+
+    :param options: ``from_=HZ``, ``to=HZ``, ``points``, ..
+    :returns: ``bands.json``; ``tables["bands"]``.
+
+    >>> import slcbeam
+    >>> found = slcbeam.bands("metamaterial", from_=20, to=50)
+    >>> round(found["gaps"][0]["from_hz"], 1)
+    29.3
+    """
+    return _do("bands", [case], out=out, progress=progress, options=options)
+
+
 def periodic(case: CaseLike, *, out: Place = None, progress: bool = False, **options: Any) -> Answer:
     """Computes the steady cycle of a periodically driven case without the transient (``slcbeam periodic``).
 

@@ -14,6 +14,7 @@ use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
 
+use super::bands::BandsArguments;
 use super::coefficients::CoefficientsArguments;
 use super::completions::CompletionsArguments;
 use super::explain::ExplainArguments;
@@ -65,6 +66,8 @@ pub enum Command {
     Modes(ModesArguments),
     /// Compute the frequency response of small motions: amplitude and phase of outputs over a signal of the case, peaks and poles
     Response(ResponseArguments),
+    /// Compute waves of a beam whose cells repeat: wave numbers, attenuation, gaps and standing waves
+    Bands(BandsArguments),
     /// Find the steady cycle of a periodically driven case and its stability, or a stability map of shaking
     Floquet(FloquetArguments),
     /// Find the steady cycle of a periodically driven case directly, without its transient; or along a parameter
@@ -113,6 +116,7 @@ impl Command {
             Self::Effects(a) => a.json,
             Self::Modes(a) => a.json,
             Self::Response(a) => a.json,
+            Self::Bands(a) => a.json,
             Self::Floquet(a) => a.json,
             Self::Periodic(a) => a.json,
             Self::Sweep(a) => a.json,

@@ -141,6 +141,19 @@ impl Layout {
         (0..self.len).map(|k| one(k).unwrap_or(0.0)).collect()
     }
 
+    /// Segment of an unknown on a mesh with so many cells per segment; none for unknowns of the network. A node between two segments
+    /// belongs to the second one.
+    pub fn segment(&self, unknown: usize, cells_per_segment: usize) -> Option<usize> {
+        match self.names[unknown] {
+            Name::Node(_, place) | Name::Cell(_, place) | Name::Relaxed(_, _, place) => Some(place / cells_per_segment),
+            Name::Segment(_, segment) => Some(segment),
+            Name::Area(bladder, _) | Name::ExcessArea(bladder) | Name::Face(_, bladder, _) => {
+                Some(bladder % self.per_row)
+            }
+            _ => None,
+        }
+    }
+
     /// Name of an unknown, with unit and place.
     pub fn name(&self, unknown: usize) -> String {
         let bladder = |b: usize| bladder_label(b, self.per_row);

@@ -25,6 +25,7 @@
 //! The data of a page is JSON in a script element that is not executed. The scripts insert every text of a case as text, so that none of it
 //! is parsed as markup. The same folder gives the same bytes.
 
+mod bands;
 mod base64;
 mod cell;
 mod compared;
@@ -140,6 +141,7 @@ fn data(place: &Place, kind: FolderKind) -> Result<Page> {
         FolderKind::Sense => sense::data(place),
         FolderKind::Optimum => optimum::data(place),
         FolderKind::Response => response::data(place),
+        FolderKind::Bands => bands::data(place),
     }
 }
 

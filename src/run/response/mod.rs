@@ -185,7 +185,7 @@ fn marked(case: &Case, input: &str) -> Result<(Case, String)> {
 
 /// Returns the case with unsteady friction of tubes, and true if it was added. A search for modes omits it unless it is requested by
 /// name. A response needs no search among the decays of this friction.
-fn with_memory(case: Case) -> Result<(Case, bool)> {
+pub fn with_memory(case: Case) -> Result<(Case, bool)> {
     let memory = Effect::UnsteadyFriction;
     let mut choices = case.effects.choices();
     let there = EffectSet::whole(&case, ResolvedNetwork::from_case(&case)?.as_ref()).has(memory);

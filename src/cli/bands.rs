@@ -1,0 +1,202 @@
+//! `slcbeam bands`: Bloch waves of a beam whose cells repeat.
+
+use std::f64::consts::TAU;
+use std::process::ExitCode;
+
+use clap::Args;
+
+use super::arguments::{CaseArguments, ResultArguments};
+use super::{resources, terminal};
+use crate::error::numbers::error_percent;
+use crate::error::{Code, Error, Result};
+use crate::output::band_structure as files;
+use crate::output::kind::FolderKind;
+use crate::output::report;
+use crate::results;
+use crate::results::bands::{
+    AttenuationRecord, BandsRecord, EnergyRecord, GapRecord, LatticeModeRecord, WaveMotion, WaveRecord,
+};
+use crate::run::bands::waves::{Lattice, WaveEnergy, WaveKind};
+use crate::study::bands::{BandGap, BandMode, BandStructure, BandWave, bands as compute, coupling_number};
+
+/// `bands`.
+#[derive(Debug, Args)]
+pub struct BandsArguments {
+    /// The case.
+    #[command(flatten)]
+    pub case: CaseArguments,
+    /// First frequency [Hz]
+    #[arg(long, value_name = "HZ", default_value_t = 1.0, allow_negative_numbers = true, value_parser = crate::cli::progress_line::frequency)]
+    pub from: f64,
+    /// Last frequency [Hz]
+    #[arg(long, value_name = "HZ", default_value_t = 200.0, allow_negative_numbers = true, value_parser = crate::cli::progress_line::frequency)]
+    pub to: f64,
+    /// Equally spaced frequencies; more are added between standing waves, where gaps are
+    #[arg(long, value_name = "COUNT", default_value_t = 200, value_parser = crate::cli::progress_line::count)]
+    pub points: usize,
+    /// Folder, time limit and output.
+    #[command(flatten)]
+    pub result: ResultArguments,
+    /// Print bands.json instead of the tables
+    #[arg(long)]
+    pub json: bool,
+}
+
+/// Largest number of frequencies.
+const MOST: usize = 100_000;
+/// Damping ratio below which damping is a rounding error.
+const ROUNDING: f64 = 1e-12;
+/// Relative error of a standing wave above which a warning is issued.
+const LARGE: f64 = 0.05;
+
+/// Computes the waves, writes the folder, prints gaps and standing waves.
+pub fn bands(asked: &BandsArguments) -> Result<ExitCode> {
+    if !(asked.from > 0.0 && asked.from < asked.to && asked.to.is_finite()) {
+        return Err(Error::Usage(format!(
+            "--from {} --to {}: expected two frequencies [Hz], the first above 0 and below the second",
+            asked.from, asked.to
+        )));
+    }
+    if !(2..=MOST).contains(&asked.points) {
+        return Err(Error::Usage(format!(
+            "--points {}: expected 2 to {MOST} frequencies",
+            asked.points
+        )));
+    }
+    let case = resources::load(&asked.case)?;
+    // a beam without a repeating cell is reported before a folder is created
+    let lattice = Lattice::new(&case)?;
+    let mut folder = asked.result.place.claim(&case, FolderKind::Bands)?;
+    asked.result.wall.flag();
+    if !asked.result.quiet {
+        terminal::print_line(&format!("waves of {}", case.name));
+    }
+    let found = compute(&case, lattice, [asked.from, asked.to], asked.points)?;
+    let answer = answer(&case.name, [asked.from, asked.to], &found);
+    let written = files::write(&mut folder, &answer).map(|_| ());
+    let written = written.and(report::complete(&folder, &case));
+    super::print_result(
+        asked.json,
+        folder.dir(),
+        written,
+        || results::text(&answer),
+        || files::describe(&answer),
+    )?;
+    Ok(ExitCode::SUCCESS)
+}
+
+fn answer(case: &str, band: [f64; 2], found: &BandStructure) -> BandsRecord {
+    let (about, cell) = (&found.lattice.about, &found.lattice.cell);
+    let standing: Vec<LatticeModeRecord> = found.standing.iter().map(mode).collect();
+    let mut warnings = super::response::cautions(0, about.moving());
+    if let Some(growing) = standing
+        .iter()
+        .chain(&spectrum(found))
+        .find(|mode| mode.damping_ratio < -1e-6)
+    {
+        warnings.push(Code::Growth.warning(format!(
+            "waves near {:.4} Hz grow: the waves at real frequencies are not those of a steady state",
+            growing.frequency_hz
+        )));
+    }
+    warnings.extend(about.range.iter().cloned());
+    let unknown = found.unknown.iter().map(|why| format!("not known: {why}"));
+    let error = |mode: &LatticeModeRecord| Some((mode.error_hz? / mode.frequency_hz, mode.frequency_hz));
+    let worst = standing.iter().filter_map(error).max_by(|a, b| a.0.total_cmp(&b.0));
+    let coarse = worst.filter(|(error, _)| *error > LARGE).map(|(error, hz)| {
+        format!(
+            "error of the standing wave at {hz:.4} Hz by the mesh: {}. Use a finer mesh (/mesh/cells_per_segment, \
+             /mesh/cells_per_bladder) or a lower --to",
+            error_percent(error)
+        )
+    });
+    warnings.extend(unknown.chain(coarse).map(|what| Code::ErrorEstimate.warning(what)));
+    let strongest = [WaveMotion::Bending, WaveMotion::Stretch]
+        .into_iter()
+        .zip(found.strongest);
+    let strongest = strongest.map(|(motion, strongest)| {
+        strongest.map(|one| AttenuationRecord {
+            motion,
+            frequency_hz: one.frequency_hz,
+            attenuation_db: decibel(one.attenuation),
+        })
+    });
+    BandsRecord {
+        case: case.into(),
+        segments_per_cell: cell.segments,
+        cell_length_m: cell.length,
+        unknowns: cell.len(),
+        coupling_number: coupling_number(&found.lattice),
+        reciprocal: found.reciprocal,
+        band_hz: band,
+        strongest: strongest.into_iter().flatten().collect(),
+        gaps: found.gaps.iter().map(gap).collect(),
+        standing,
+        waves: found.waves.iter().map(wave).collect(),
+        spectrum: spectrum(found),
+        warnings,
+    }
+}
+
+fn spectrum(found: &BandStructure) -> Vec<LatticeModeRecord> {
+    found.spectrum.iter().map(mode).collect()
+}
+
+fn energy(energy: WaveEnergy) -> EnergyRecord {
+    EnergyRecord {
+        motion: match energy.kind() {
+            WaveKind::Bending => WaveMotion::Bending,
+            WaveKind::Stretch => WaveMotion::Stretch,
+            WaveKind::Fluid => WaveMotion::Fluid,
+        },
+        bending: energy.bending,
+        stretch: energy.stretch,
+        fluid: energy.fluid,
+    }
+}
+
+/// Decibel per neper.
+fn decibel(neper: f64) -> f64 {
+    20.0 * neper / std::f64::consts::LN_10
+}
+
+fn wave(wave: &BandWave) -> WaveRecord {
+    WaveRecord {
+        frequency_hz: wave.frequency_hz,
+        real: wave.wave_number.re,
+        imag: wave.wave_number.im,
+        attenuation_db: decibel(wave.wave_number.im),
+        error: wave.error,
+        energy: energy(wave.energy),
+    }
+}
+
+fn gap(gap: &BandGap) -> GapRecord {
+    GapRecord {
+        motion: if gap.stretch {
+            WaveMotion::Stretch
+        } else {
+            WaveMotion::Bending
+        },
+        from_hz: gap.edges[0],
+        to_hz: gap.edges[1],
+        from_error_hz: gap.errors[0],
+        to_error_hz: gap.errors[1],
+        attenuation_db: decibel(gap.attenuation),
+        deepest_hz: gap.deepest_hz,
+    }
+}
+
+fn mode(mode: &BandMode) -> LatticeModeRecord {
+    LatticeModeRecord {
+        wave_number: mode.wave_number,
+        frequency_hz: mode.s.im / TAU,
+        damping_ratio: if mode.s.re.abs() < ROUNDING * mode.s.norm() {
+            0.0
+        } else {
+            -mode.s.re / mode.s.norm()
+        },
+        error_hz: mode.error.map(|error| error / TAU),
+        energy: energy(mode.energy),
+    }
+}

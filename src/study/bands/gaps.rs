@@ -1,0 +1,226 @@
+//! Gaps: frequencies at which no wave of a motion passes.
+
+use std::f64::consts::TAU;
+
+use super::{BandGap, BandMode, BandWave, Meshes, StrongestAttenuation, is_lossless, stretches, waves_at};
+use crate::integrate::halt;
+use crate::run::bands::waves::Lattice;
+
+/// Attenuation of a gap with losses: 1 dB per cell, in neper.
+const GAP: f64 = std::f64::consts::LN_10 / 20.0;
+/// Wave number at which losses are judged, and damping ratio below which there are none, of oscillations up to so many times the band.
+const LAG: f64 = 1.0;
+const DAMPED: f64 = 1e-8;
+const BEYOND: f64 = 10.0;
+/// Bisections of an edge, and the largest number of steps, in which its bracket doubles, from it to that on another mesh.
+const BISECTIONS: usize = 50;
+const DOUBLINGS: usize = 14;
+const NEAR: f64 = 1e-5;
+/// Largest relative distance of an edge without losses from the oscillation that it is.
+const AT_EDGE: f64 = 1e-4;
+/// Relative width below which a gap is a rounding error of one sample.
+const NARROWEST: f64 = 1e-6;
+/// Golden-section steps of the search for the strongest attenuation.
+const STEPS: usize = 40;
+
+/// Waves of one motion over a band.
+pub struct Motion<'a> {
+    meshes: &'a Meshes<'a>,
+    /// True for waves that mainly stretch the beam, false for those that bend it.
+    stretch: bool,
+    /// True if no wave of this motion has losses.
+    lossless: bool,
+    /// Oscillations of this motion with wave numbers 0 and π.
+    standing: Vec<BandMode>,
+    frequencies: &'a [f64],
+    /// Least attenuated wave at each frequency.
+    least: Vec<Least>,
+}
+
+/// Wave of one motion that is attenuated least.
+#[derive(Clone, Copy)]
+struct Least {
+    /// Attenuation [neper per cell]; infinite without waves.
+    attenuation: f64,
+    /// True if it passes without loss.
+    passes: bool,
+}
+
+/// Edge of a gap [Hz] with its error [Hz].
+#[derive(Clone, Copy)]
+struct GapEdge {
+    hz: f64,
+    error: Option<f64>,
+}
+
+impl<'a> Motion<'a> {
+    /// Waves of a motion among those of samples.
+    pub fn new(
+        meshes: &'a Meshes<'a>,
+        stretch: bool,
+        standing: &[BandMode],
+        frequencies: &'a [f64],
+        waves: &[Vec<BandWave>],
+    ) -> Self {
+        let top = TAU * BEYOND * frequencies.last().copied().unwrap_or(0.0);
+        let lossless = !meshes
+            .own
+            .loses(LAG, top, DAMPED, |energy| stretches(energy) == stretch);
+        let least = |waves: &Vec<BandWave>| {
+            let own = waves.iter().filter(|wave| stretches(wave.energy) == stretch);
+            Least::of_numbers(own.map(|wave| wave.on_mesh), lossless)
+        };
+        Self {
+            meshes,
+            stretch,
+            lossless,
+            standing: standing
+                .iter()
+                .copied()
+                .filter(|mode| stretches(mode.energy) == stretch)
+                .collect(),
+            frequencies,
+            least: waves.iter().map(least).collect(),
+        }
+    }
+
+    fn at(&self, lattice: &Lattice, hz: f64) -> Least {
+        let waves = waves_at(lattice, hz).into_iter();
+        let own = waves.filter(|wave| stretches(lattice.energy(wave)) == self.stretch);
+        Least::of_numbers(own.map(|wave| wave.wave_number()), self.lossless)
+    }
+
+    /// Largest attenuation near a sample of a local maximum.
+    fn refined(&self, sample: usize) -> StrongestAttenuation {
+        let golden = 0.5 * (5.0_f64.sqrt() - 1.0);
+        let last = self.frequencies.len() - 1;
+        let at = |hz: f64| self.at(self.meshes.own, hz).attenuation;
+        let [mut low, mut high] = [sample.saturating_sub(1), (sample + 1).min(last)].map(|k| self.frequencies[k]);
+        for _ in 0..STEPS {
+            let [left, right] = [high - golden * (high - low), low + golden * (high - low)];
+            match at(left) > at(right) {
+                true => high = right,
+                false => low = left,
+            }
+        }
+        let middle = 0.5 * (low + high);
+        let all = [
+            (middle, at(middle)),
+            (self.frequencies[sample], self.least[sample].attenuation),
+        ];
+        let [found, sampled] = all.map(|(frequency_hz, attenuation)| StrongestAttenuation {
+            frequency_hz,
+            attenuation,
+        });
+        let better = found.attenuation.is_finite() && found.attenuation > sampled.attenuation;
+        if better { found } else { sampled }
+    }
+
+    fn strongest_of(&self, samples: impl Iterator<Item = usize>) -> Option<StrongestAttenuation> {
+        let size = |k: &usize| self.least[*k].attenuation;
+        let known = samples.filter(|k| size(k).is_finite());
+        known
+            .max_by(|a, b| size(a).total_cmp(&size(b)))
+            .map(|k| self.refined(k))
+    }
+
+    /// Largest attenuation of the least attenuated wave; none without waves.
+    pub fn strongest(&self) -> Option<StrongestAttenuation> {
+        self.strongest_of(0..self.least.len())
+    }
+
+    /// Gaps in the band. An edge is where attenuation begins; with losses where it passes 1 dB.
+    pub fn gaps(&self) -> Vec<BandGap> {
+        let closed = |k: usize| self.least.get(k).is_some_and(|least| !least.passes);
+        let begins = |k: &usize| closed(*k) && (*k == 0 || !closed(k - 1));
+        let gap = |first: usize| {
+            let behind = (first..).find(|k| !closed(*k)).unwrap_or(first);
+            let edge = |inside: usize, outside: Option<usize>| match outside {
+                None => [GapEdge::at(self.frequencies[inside]); 2],
+                Some(outside) => self.edge(self.frequencies[inside], self.frequencies[outside]),
+            };
+            let both = [
+                edge(first, first.checked_sub(1)),
+                edge(behind - 1, Some(behind).filter(|k| *k < self.least.len())),
+            ];
+            // errors of a coarse mesh exceed the width of a narrow gap
+            let ordered = both[0][1].hz < both[1][1].hz;
+            let edges = both.map(|[own, extrapolated]| if ordered { extrapolated } else { own });
+            let strongest = self.strongest_of(first..behind);
+            BandGap {
+                stretch: self.stretch,
+                edges: edges.map(|edge| edge.hz),
+                errors: edges.map(|edge| edge.error),
+                deepest_hz: strongest.map_or(f64::NAN, |one| one.frequency_hz),
+                attenuation: strongest.map_or(f64::INFINITY, |one| one.attenuation),
+            }
+        };
+        let wide = |gap: &BandGap| gap.edges[1] - gap.edges[0] > NARROWEST * gap.edges[1];
+        (0..self.least.len()).filter(begins).map(gap).filter(wide).collect()
+    }
+
+    /// Edge between a frequency in a gap and one outside [Hz], on the mesh and extrapolated. Without losses it is an oscillation of wave
+    /// number 0 or π.
+    fn edge(&self, inside: f64, outside: f64) -> [GapEdge; 2] {
+        let passes = |lattice: &Lattice, hz: f64| self.at(lattice, hz).passes;
+        let bisect = |lattice: &Lattice, mut inside: f64, mut outside: f64| {
+            for _ in 0..BISECTIONS {
+                let middle = 0.5 * (inside + outside);
+                if halt::asked() || middle == inside || middle == outside {
+                    break;
+                }
+                let end = if passes(lattice, middle) {
+                    &mut outside
+                } else {
+                    &mut inside
+                };
+                *end = middle;
+            }
+            0.5 * (inside + outside)
+        };
+        let own = bisect(self.meshes.own, inside, outside);
+        let at = |mode: &&BandMode| (mode.on_mesh.im / TAU - own).abs() < AT_EDGE * own;
+        if let Some(mode) = self.standing.iter().find(at).filter(|_| self.lossless) {
+            let error = mode.error.map(|error| error / TAU);
+            return [mode.on_mesh, mode.s].map(|s| GapEdge { hz: s.im / TAU, error });
+        }
+        let toward = (inside - outside).signum();
+        let (mut edge, mut error) = (own, (!self.meshes.others.is_empty()).then_some(0.0));
+        for (other, by) in &self.meshes.others {
+            let bracket = (0..DOUBLINGS).find_map(|k| {
+                let by = toward * NEAR * own * f64::from(1 << k);
+                let found = !passes(other, own + by) && passes(other, own - by);
+                found.then_some([own + by, own - by])
+            });
+            error = error.zip(bracket).map(|(error, [inside, outside])| {
+                let change = (bisect(other, inside, outside) - own) * by;
+                edge += change;
+                error + change.abs()
+            });
+        }
+        let hz = if error.is_some() { edge } else { own };
+        [GapEdge { hz: own, error }, GapEdge { hz, error }]
+    }
+}
+
+impl GapEdge {
+    fn at(hz: f64) -> Self {
+        Self { hz, error: None }
+    }
+}
+
+impl Least {
+    fn of_numbers(numbers: impl Iterator<Item = nalgebra::Complex<f64>>, lossless: bool) -> Self {
+        let least = numbers.min_by(|a, b| a.im.abs().total_cmp(&b.im.abs()));
+        Self {
+            attenuation: least.map_or(f64::INFINITY, |least| least.im.abs()),
+            passes: least.is_some_and(|least| {
+                if lossless {
+                    is_lossless(least)
+                } else {
+                    least.im.abs() <= GAP
+                }
+            }),
+        }
+    }
+}

@@ -1,0 +1,302 @@
+//! Band structure of a beam whose cells repeat: waves over a band of frequencies, gaps, standing waves, and errors by the meshes.
+//!
+//! ```text
+//! sample    waves at a frequency, extrapolated
+//! gaps      frequencies at which no wave of a motion passes
+//! ```
+
+mod gaps;
+mod sample;
+
+use std::f64::consts::{PI, TAU};
+
+use nalgebra::Complex;
+
+use self::gaps::Motion;
+use self::sample::Sample;
+use super::refine::has_cells_along_bladders;
+use crate::case::Case;
+use crate::error::{Error, Result};
+use crate::integrate::halt;
+use crate::numerics::threads;
+use crate::run::bands::waves::{BlochWave, Lattice, WaveEnergy};
+
+/// Attenuation [neper per cell] above which a wave is left out.
+const MOST: f64 = 7.0;
+/// Attenuation [neper per cell] below which a wave passes without loss: relative to its phase lag, and at least.
+const LOSSLESS: (f64, f64) = (1e-7, 1e-9);
+/// Largest relative difference of a wave on two meshes.
+const SAME: f64 = 0.25;
+/// Median over the samples of the relative difference of waves in both directions below which a cell is reciprocal.
+const RECIPROCAL: f64 = 1e-6;
+/// Wave numbers from 0 to π of the spectrum.
+const SPECTRUM: usize = 33;
+/// Difference from a mesh of half the cells over the error: of the beam by its order, of bladders.
+const OF_BEAM: [f64; 2] = [4.0 / 3.0, 16.0 / 15.0];
+const OF_BLADDERS: f64 = 4.0 / 3.0;
+
+/// A wave at a frequency.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct BandWave {
+    /// Frequency [Hz].
+    pub frequency_hz: f64,
+    /// Phase lag per cell [rad] and attenuation per cell [neper], extrapolated.
+    pub wave_number: Complex<f64>,
+    /// The same on the mesh.
+    pub on_mesh: Complex<f64>,
+    /// Estimated error of the wave number on the mesh; unknown if another mesh has no such wave.
+    pub error: Option<f64>,
+    /// Shares of its energy.
+    pub energy: WaveEnergy,
+}
+
+/// A frequency of a real wave number.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct BandMode {
+    /// Wave number per cell [rad].
+    pub wave_number: f64,
+    /// Eigenvalue s [1/s], extrapolated if its error is known.
+    pub s: Complex<f64>,
+    /// The same on the mesh.
+    pub on_mesh: Complex<f64>,
+    /// Estimated error of s on the mesh [1/s]; none if it was not computed.
+    pub error: Option<f64>,
+    /// Shares of its energy.
+    pub energy: WaveEnergy,
+}
+
+/// A band of frequencies in which no wave of one motion passes.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct BandGap {
+    /// True for waves that mainly stretch the beam, false for those that bend it.
+    pub stretch: bool,
+    /// Edges [Hz], extrapolated; those of the band that was computed if the gap extends beyond it.
+    pub edges: [f64; 2],
+    /// Estimated errors of the edges on the mesh [Hz]; unknown for an edge of the band and if another mesh has no such edge.
+    pub errors: [Option<f64>; 2],
+    /// Frequency of the largest attenuation among the samples [Hz].
+    pub deepest_hz: f64,
+    /// Attenuation there of the wave that is attenuated least [neper per cell].
+    pub attenuation: f64,
+}
+
+/// Largest attenuation of the wave of a motion that is attenuated least.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct StrongestAttenuation {
+    /// Frequency [Hz].
+    pub frequency_hz: f64,
+    /// Attenuation [neper per cell].
+    pub attenuation: f64,
+}
+
+/// Waves of a cell over a band of frequencies.
+pub struct BandStructure {
+    /// The beam and its cell.
+    pub lattice: Lattice,
+    /// True if every wave has a reverse with the same attenuation; only one of both is listed.
+    pub reciprocal: bool,
+    /// Of bending and of stretch, if there are such waves, the largest attenuation among the samples of the wave that is attenuated least.
+    pub strongest: [Option<StrongestAttenuation>; 2],
+    /// Waves in ascending order of frequency and attenuation.
+    pub waves: Vec<BandWave>,
+    /// Gaps in ascending order of frequency.
+    pub gaps: Vec<BandGap>,
+    /// Oscillations of wave numbers 0 and π, in ascending order of frequency.
+    pub standing: Vec<BandMode>,
+    /// Oscillations over the wave number.
+    pub spectrum: Vec<BandMode>,
+    /// Reasons why errors are unknown.
+    pub unknown: Vec<String>,
+}
+
+/// Share of bending in a beam of one uniform section that the fluid of sealed bladders adds, `κ = Σ EI φ_b l_b A_M'²/a_p` over the rows
+/// (with a_x by the inverse of both compliances); none without bladders.
+pub fn coupling_number(lattice: &Lattice) -> Option<f64> {
+    let system = lattice.about.system();
+    let (wet, segment) = (system.model.wet.as_ref()?, lattice.cell.first);
+    let ratio = wet.length_ratio_of(segment, system.model.length);
+    let node = segment * system.mesh.cells_per_segment;
+    let stiffness = system.sections.bending[node];
+    let rows = wet.pair(segment).into_iter().filter(|bladder| wet.has(*bladder));
+    let laws = rows.map(|bladder| wet.area_of(bladder)).collect::<Vec<_>>();
+    let own = match laws[..] {
+        [one] => one.moment_mean.powi(2) / one.per_pressure,
+        // the rows bend to opposite sides
+        [upper, lower] => {
+            let (m, n, x) = (upper.moment_mean, lower.moment_mean, wet.per_other_pressure_of(segment));
+            let [p, q] = [upper.per_pressure, lower.per_pressure];
+            (m * m * q + 2.0 * x * m * n + n * n * p) / (p * q - x * x)
+        }
+        _ => return None,
+    };
+    Some(stiffness * ratio * own)
+}
+
+/// Computes the waves of a case between two frequencies [Hz], at equally spaced samples and at those that separate gaps.
+///
+/// # Errors
+/// The case has no repeating cell, [`Lattice::new`]; or an interruption.
+pub fn bands(case: &Case, lattice: Lattice, band: [f64; 2], points: usize) -> Result<BandStructure> {
+    let mut unknown = vec![];
+    let mut others = vec![];
+    for (other, factor) in meshes(case, lattice.about.system().mesh.fourth)? {
+        match Lattice::new(&other) {
+            Ok(lattice) => others.push((lattice, factor)),
+            Err(interrupted @ Error::Interrupted(_)) => return Err(interrupted),
+            Err(fault) => unknown.push(fault.to_string()),
+        }
+    }
+    let all = Meshes { own: &lattice, others };
+    let standing = all.standing(band);
+    let frequencies = samples(band, points, &standing);
+    let samples = in_parts(&frequencies, |hz| all.at(hz))?;
+    let mut asymmetries: Vec<f64> = samples.iter().map(Sample::asymmetry).collect();
+    asymmetries.sort_by(f64::total_cmp);
+    // single samples beside a resonance may have large rounding errors
+    let reciprocal = asymmetries[asymmetries.len() / 2] < RECIPROCAL;
+    let waves: Vec<Vec<BandWave>> = samples.iter().map(|sample| sample.extrapolated(reciprocal)).collect();
+    let mut gaps = vec![];
+    let strongest = [false, true].map(|stretch| {
+        let motion = Motion::new(&all, stretch, &standing, &frequencies, &waves);
+        gaps.extend(motion.gaps());
+        motion.strongest()
+    });
+    gaps.sort_by(|a, b| a.edges[0].total_cmp(&b.edges[0]));
+    let spectrum = (0..SPECTRUM).flat_map(|k| modes_at(&lattice, PI * k as f64 / (SPECTRUM - 1) as f64, band));
+    Ok(BandStructure {
+        reciprocal,
+        strongest,
+        waves: waves.into_iter().flatten().collect(),
+        gaps,
+        standing,
+        spectrum: spectrum.collect(),
+        unknown,
+        lattice,
+    })
+}
+
+/// Cases of the meshes that a result is compared with, and the factors of the differences: twice the cells of the beam, and of bladders.
+fn meshes(case: &Case, fourth: bool) -> Result<Vec<(Case, f64)>> {
+    let mut finer = case.clone();
+    finer.mesh.cells_per_segment *= 2;
+    let mut all = vec![(finer, OF_BEAM[usize::from(fourth)])];
+    if has_cells_along_bladders(case)? {
+        let mut finer = case.clone();
+        finer.mesh.cells_per_bladder *= 2;
+        all.push((finer, OF_BLADDERS));
+    }
+    Ok(all)
+}
+
+/// Equally spaced frequencies, and those at and between oscillations of wave numbers 0 and π, since edges of gaps are there.
+fn samples(band: [f64; 2], points: usize, standing: &[BandMode]) -> Vec<f64> {
+    let step = (band[1] - band[0]) / (points.max(2) - 1) as f64;
+    let mut all: Vec<f64> = (0..points).map(|k| band[0] + k as f64 * step).collect();
+    let at: Vec<f64> = standing.iter().map(|mode| mode.s.im / TAU).collect();
+    all.extend(at.windows(2).map(|pair| 0.5 * (pair[0] + pair[1])));
+    all.retain(|hz| (band[0]..=band[1]).contains(hz));
+    all.push(band[1]);
+    all.sort_by(f64::total_cmp);
+    all.dedup_by(|a, b| *a <= *b * (1.0 + 1e-9));
+    all
+}
+
+/// Applies a function to samples in two threads.
+fn in_parts<T: Send>(samples: &[f64], of: impl Fn(f64) -> T + Sync) -> Result<Vec<T>> {
+    let halves = samples.split_at(samples.len() / 2);
+    let part = |part: &[f64]| -> Result<Vec<T>> {
+        let one = |hz: &f64| match halt::asked() {
+            true => Err(Error::Interrupted(
+                "interrupted before the waves were computed; nothing is written".into(),
+            )),
+            false => Ok(of(*hz)),
+        };
+        part.iter().map(one).collect()
+    };
+    let heard = &halt::heard();
+    let (first, second) = threads::both(|| heard.during(|| part(halves.0)), || part(halves.1));
+    Ok(first?.into_iter().chain(second?).collect())
+}
+
+/// A beam on several meshes, with the factors of the differences from its own one.
+struct Meshes<'a> {
+    own: &'a Lattice,
+    others: Vec<(Lattice, f64)>,
+}
+
+impl Meshes<'_> {
+    /// Waves at a frequency.
+    fn at(&self, hz: f64) -> Sample {
+        let waves = |lattice: &Lattice| waves_at(lattice, hz);
+        Sample {
+            hz,
+            own: waves(self.own)
+                .into_iter()
+                .map(|wave| (self.own.energy(&wave), wave))
+                .collect(),
+            others: self.others.iter().map(|(other, by)| (waves(other), *by)).collect(),
+        }
+    }
+
+    /// Oscillations of wave numbers 0 and π with errors, in ascending order of frequency.
+    fn standing(&self, band: [f64; 2]) -> Vec<BandMode> {
+        let wide = [0.5 * band[0], 1.5 * band[1]];
+        let mut all = vec![];
+        for wave_number in [0.0, PI] {
+            let others: Vec<(Vec<BandMode>, f64)> = self
+                .others
+                .iter()
+                .map(|(other, by)| (modes_at(other, wave_number, wide), *by))
+                .collect();
+            let extrapolated = |mode: BandMode| {
+                let (mut s, mut error) = (mode.s, (!others.is_empty()).then_some(0.0));
+                for (modes, by) in &others {
+                    let near = modes
+                        .iter()
+                        .min_by(|a, b| (a.s - mode.s).norm().total_cmp(&(b.s - mode.s).norm()));
+                    let near = near.filter(|near| (near.s - mode.s).norm() < SAME * mode.s.norm());
+                    error = error.zip(near).map(|(error, near)| {
+                        let change = (near.s - mode.s) * *by;
+                        s += change;
+                        error + change.norm()
+                    });
+                }
+                let s = if error.is_some() { s } else { mode.s };
+                BandMode { s, error, ..mode }
+            };
+            all.extend(modes_at(self.own, wave_number, band).into_iter().map(extrapolated));
+        }
+        all.sort_by(|a, b| a.s.im.total_cmp(&b.s.im));
+        all
+    }
+}
+
+fn stretches(energy: WaveEnergy) -> bool {
+    energy.stretch > energy.bending
+}
+
+fn waves_at(lattice: &Lattice, hz: f64) -> Vec<BlochWave> {
+    let mut waves = lattice.waves(Complex::new(0.0, TAU * hz));
+    waves.retain(|wave| wave.wave_number().im.abs() <= MOST);
+    waves
+}
+
+/// True if a wave with this phase lag and attenuation passes without loss.
+fn is_lossless(number: Complex<f64>) -> bool {
+    number.im.abs() <= (LOSSLESS.0 * number.re.abs()).max(LOSSLESS.1)
+}
+
+/// Oscillations of a wave number in a band [Hz].
+fn modes_at(lattice: &Lattice, wave_number: f64, band: [f64; 2]) -> Vec<BandMode> {
+    let mode = |wave: BlochWave| BandMode {
+        wave_number,
+        s: wave.s,
+        on_mesh: wave.s,
+        error: None,
+        energy: lattice.energy(&wave),
+    };
+    let found = lattice.frequencies(wave_number, band.map(|hz| TAU * hz));
+    let mut all: Vec<BandMode> = found.into_iter().map(mode).collect();
+    all.sort_by(|a, b| a.s.im.total_cmp(&b.s.im));
+    all
+}
