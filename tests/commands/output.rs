@@ -535,40 +535,38 @@ fn pictures_are_well_formed_and_labelled() {
 #[test]
 fn pressure_curves_break_between_networks() {
     let x_f: Vec<f64> = header().axes[1].values.clone();
+    let bladder: Vec<i64> = header().axes[2].values.iter().map(|&b| b as i64).collect();
     let data = plot::Pressure {
         case: "two".into(),
         span: plot::TimeSpan::WholeRun,
         times: vec![0.0, 1.0],
-        bladder: header().axes[2].values.iter().map(|&b| b as i64).collect(),
-        network: Vec::new(),
+        network: bladder.iter().map(|b| b.signum()).collect(),
+        bladder,
         pressure: vec![x_f.clone(), vec![0.5; x_f.len()]],
         x_f,
     };
     let lines = |svg: &str, colour: &str| svg.matches(&format!("stroke=\"{colour}\"")).count();
-    let guessed = plot::pressure::draw(&data).expect("a picture");
+    let two = plot::pressure::draw(&data).expect("a picture");
     // Dark blue and dark red: a piece for each of the two networks.
-    assert_eq!((lines(&guessed, "#0B246B"), lines(&guessed, "#6E081B")), (2, 2));
-    let told = plot::Pressure {
+    assert_eq!((lines(&two, "#0B246B"), lines(&two, "#6E081B")), (2, 2));
+    let one = plot::Pressure {
         network: vec![7; data.x_f.len()],
         ..data
     };
-    assert_eq!(lines(&plot::pressure::draw(&told).expect("a picture"), "#0B246B"), 1);
+    assert_eq!(lines(&plot::pressure::draw(&one).expect("a picture"), "#0B246B"), 1);
 }
 
 /// Goal: the subtitle names error bands only where one is drawn; a line hides a narrow one.
 #[test]
 fn a_picture_names_its_error_bands() {
-    let history = |width: f64| plot::HistoryPlot {
-        case: "one".into(),
-        curves: vec![plot::PlottedCurve {
-            name: "tip_u1".into(),
-            unit: "m".into(),
-            points: vec![(0.0, 0.0), (1.0, 1.0)],
-            widths: vec![(0.0, 0.0), (1.0, width)],
-        }],
+    let curve = |width: f64| plot::PlottedCurve {
+        name: "tip_u1".into(),
+        unit: "m".into(),
+        points: vec![(0.0, 0.0), (1.0, 1.0)],
+        widths: vec![(0.0, 0.0), (1.0, width)],
     };
     let named = |width: f64| {
-        let svg = plot::history::draw(&history(width)).expect("a picture");
+        let svg = plot::history::draw("one", &[curve(width)]).expect("a picture");
         let [shade, subtitle] = ["fill-opacity", "bands: estimated error"].map(|part| svg.contains(part));
         assert_eq!(shade, subtitle, "{width}");
         subtitle
@@ -578,8 +576,8 @@ fn a_picture_names_its_error_bands() {
 
 #[test]
 fn absent_data_make_no_picture() {
-    assert_eq!(plot::history::draw(&plot::HistoryPlot::default()), None);
-    assert_eq!(plot::energy::draw(&plot::Energy::default()), None);
+    assert_eq!(plot::history::draw("none", &[]), None);
+    assert_eq!(plot::energy::draw("none", &[]), None);
     let dry = Header {
         columns: vec![HistoryColumn {
             name: "t".into(),
