@@ -3,7 +3,7 @@
 use serde_json::{Value, json};
 
 use super::bands;
-use super::columns::{aligned, warnings};
+use super::columns::{aligned, if_any, joined, warnings};
 use super::folder::ResultFolder;
 use super::numbers::{count, counted, percent, significant};
 use crate::error::Result;
@@ -73,18 +73,14 @@ pub fn describe(found: &Uncertainty) -> String {
 
 /// Heading of the table: inputs and samples.
 fn about(found: &Uncertainty) -> String {
-    let inputs: Vec<String> = found
-        .inputs
-        .iter()
-        .map(|one| format!("{} = {}", one.pointer, one.distribution))
-        .collect();
-    let finished = match found.samples - found.finished {
-        0 => String::new(),
-        lost => format!(", {} of which did not finish", count(lost as u64)),
-    };
+    let inputs = found.inputs.iter();
+    let inputs = inputs.map(|one| format!("{} = {}", one.pointer, one.distribution));
+    let finished = if_any(found.samples - found.finished, |lost| {
+        format!(", {} of which did not finish", count(lost as u64))
+    });
     format!(
         "Uncertainty from {}, by {}{finished} (seed {}):",
-        inputs.join(", "),
+        joined(inputs, ", "),
         counted(found.samples as u64, "sample"),
         found.seed
     )

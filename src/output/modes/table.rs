@@ -4,7 +4,7 @@ use std::fmt::Write as _;
 
 use super::{Report, moves};
 use crate::case::schema::Effect;
-use crate::output::columns::{aligned, cells};
+use crate::output::columns::{aligned, cells, if_any};
 use crate::output::numbers::{counted, percent, quantity, significant};
 use crate::output::records::{self, number};
 use crate::run::modes::{LimitingMode, Mode, TimeBehavior};
@@ -90,31 +90,20 @@ pub fn table(report: &Report) -> String {
 
 /// Counts of the modes that do not move.
 fn staying(report: &Report) -> String {
-    let count = |kind| report.found.modes.iter().filter(|mode| mode.kind == kind).count();
-    let described = |count: usize, one: &str, what: &str| match count {
-        0 => None,
-        1 => Some(format!("1 {one} ({what})")),
-        n => Some(format!("{n} {one}s ({what})")),
+    let described = |(kind, what): (TimeBehavior, &str)| {
+        let one = kind.word();
+        match report.found.modes.iter().filter(|mode| mode.kind == kind).count() {
+            0 => None,
+            1 => Some(format!("1 {one} ({what})")),
+            n => Some(format!("{n} {one}s ({what})")),
+        }
     };
-    let all: Vec<String> = [
-        described(
-            count(TimeBehavior::Rigid),
-            TimeBehavior::Rigid.word(),
-            "nothing holds them",
-        ),
-        described(
-            count(TimeBehavior::Volume),
-            TimeBehavior::Volume.word(),
-            "fluid of closed networks",
-        ),
-    ]
-    .into_iter()
-    .flatten()
-    .collect();
-    match all.is_empty() {
-        true => String::new(),
-        false => format!("and with s = 0: {}\n", all.join(", ")),
-    }
+    let kinds = [
+        (TimeBehavior::Rigid, "nothing holds them"),
+        (TimeBehavior::Volume, "fluid of closed networks"),
+    ];
+    let all = kinds.into_iter().filter_map(described).collect::<Vec<_>>();
+    if_any(all.len(), |_| format!("and with s = 0: {}\n", all.join(", ")))
 }
 
 fn line(number: usize, mode: &Mode) -> [String; 13] {

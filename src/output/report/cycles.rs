@@ -5,6 +5,7 @@ use serde_json::{Value, json};
 use super::{FolderKind, MOST_ROWS, Page, Place, StoredResult, capital};
 use crate::error::Result;
 use crate::output::bands;
+use crate::output::columns::if_any;
 use crate::output::folder::CASE;
 use crate::output::numbers::{counted, significant};
 use crate::output::periodic::{SHOWN, energies, largest};
@@ -167,10 +168,7 @@ pub fn sweep(place: &Place) -> Result<Page> {
     let (low, high) = members.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), m| {
         (l.min(m.value), h.max(m.value))
     });
-    let without = match missing.len() {
-        0 => String::new(),
-        n => format!(" For {n} values none was found."),
-    };
+    let without = if_any(missing.len(), |n| format!(" For {n} values none was found."));
     // all cycles of one case have the same energy figures
     let figures = members.first().map_or(vec![], energies);
     let mut headings = vec![pointer.clone()];

@@ -46,10 +46,8 @@ pub fn data(place: &Place) -> Result<Page> {
         let warning = format!("{ARRAYS} cannot be read ({e}), so no shapes are shown.");
         page.warnings.push(warning);
     }
-    let near = match found.near_hz {
-        0.0 => String::new(),
-        near => format!(" --near {near}"),
-    };
+    let near = Some(found.near_hz).filter(|near| *near != 0.0);
+    let near = near.map_or(String::new(), |near| format!(" --near {near}"));
     // Older results do not store the state. At 0 s it is then taken as the start, later as an equilibrium.
     let at = match (found.state, found.at_s) {
         (Some(LinearisedState::Start), _) | (None, 0.0) => String::new(),

@@ -2,6 +2,7 @@
 
 use super::JournalSummary;
 use crate::error::{Code, Result};
+use crate::output::columns::if_any;
 use crate::output::numbers::{significant, trimmed};
 use crate::results::sweep::SweepPlan;
 use crate::study::sweep::exchanged::{DesignModes, Exchange, MOST, exchanges};
@@ -37,10 +38,9 @@ pub fn warnings(all: &[Exchange]) -> Vec<String> {
         )
     };
     let listed: Vec<String> = all.iter().take(LISTED).map(one).collect();
-    let more = match all.len().saturating_sub(LISTED) {
-        0 => String::new(),
-        n => format!("; and so between {n} more pairs of designs"),
-    };
+    let more = if_any(all.len().saturating_sub(LISTED), |n| {
+        format!("; and so between {n} more pairs of designs")
+    });
     let warning = || {
         Code::ModesExchanged.warning(format!(
             "modes change places: {}{more}; read damping_ratio beside each frequency",
