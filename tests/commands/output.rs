@@ -5,7 +5,7 @@ use std::fs;
 use std::path::Path;
 
 use slcbeam::case::CaseText;
-use slcbeam::output::envelope::{Envelope, HistorySource};
+use slcbeam::output::envelope::{Envelope, HistorySource, RowOrigin};
 use slcbeam::output::kind::FolderKind;
 use slcbeam::output::recorder::Finished;
 use slcbeam::output::{FolderRecorder, Labels, ResultFolder, folder, pictures, plot, report, summary};
@@ -616,10 +616,10 @@ fn instants_cover_the_last_cycle_or_everything() {
 #[test]
 fn no_extreme_is_lost_and_memory_is_bounded() {
     let names = vec![("t".to_string(), "s".to_string()), ("y".to_string(), "m".to_string())];
-    let mut envelope = Envelope::new(names, 101);
+    let mut envelope = Envelope::new(101);
     for k in 0..12_345 {
         let y = if k == 7_777 { 5.0 } else { (f64::from(k) * 0.7).sin() };
-        envelope.push(&[f64::from(k), y]);
+        envelope.add(&names, RowOrigin::History, &[f64::from(k), y]);
     }
     let points = envelope.points(1);
     assert!(points.len() <= 202, "{}", points.len());
@@ -635,10 +635,10 @@ fn no_extreme_is_lost_and_memory_is_bounded() {
 #[test]
 fn a_short_history_is_kept_as_it_is() {
     let names = vec![("t".to_string(), "s".to_string()), ("y".to_string(), "m".to_string())];
-    let mut envelope = Envelope::new(names, 100);
-    envelope.push(&[0.0, 1.0]);
-    envelope.push(&[1.0, f64::NAN]);
-    envelope.push(&[2.0, 1.0]);
+    let mut envelope = Envelope::new(100);
+    envelope.add(&names, RowOrigin::History, &[0.0, 1.0]);
+    envelope.add(&names, RowOrigin::History, &[1.0, f64::NAN]);
+    envelope.add(&names, RowOrigin::History, &[2.0, 1.0]);
     let points = envelope.points(1);
     assert_eq!(points.len(), 3);
     assert!(points[1].1.is_nan());

@@ -50,7 +50,7 @@ fn pictures(section: &Section, ending: &str) -> Vec<Value> {
         let drawn = cell::draw(&found, load)?;
         Some(json!({
             "title": format!("{name}{ending}"),
-            "picture": base64::image("image/svg+xml", drawn.svg.as_bytes()),
+            "picture": base64::svg(drawn.svg.as_bytes()),
             "about": format!("1 {unit}, displacements × {}", significant(drawn.factor, 1)),
         }))
     };

@@ -2,7 +2,7 @@
 
 use serde_json::{Value, json};
 
-use super::{FolderKind, MOST_ROWS, Page, Place, StoredResult, capital};
+use super::{FolderKind, MOST_ROWS, Page, Place, StoredResult, capital, cells};
 use crate::error::Result;
 use crate::output::bands;
 use crate::output::columns::if_any;
@@ -21,10 +21,7 @@ const GROWTH: &str = "growth_per_s";
 /// Table of the multipliers.
 fn multipliers(found: &CycleResult) -> Value {
     let banded = !found.bands.is_empty();
-    let names: Vec<String> = numbers::named(&found.floquet)
-        .into_iter()
-        .map(|(name, _)| name)
-        .collect();
+    let names: Vec<String> = numbers::named(&found.floquet).into_iter().unzip::<_, _, _, Vec<_>>().0;
     // for a cycle's run only the band of the largest rate is known
     let band = |k: usize| {
         let own = found.bands.get(&format!("{}.{GROWTH}", names[k]));
@@ -40,20 +37,12 @@ fn multipliers(found: &CycleResult) -> Value {
         let before = [m.re, m.im, m.modulus, m.growth_per_s].map(Value::from);
         let behind = [json!(m.frequency_hz), json!(part), json!(m.share)];
         let band = banded.then(|| json!(band(k)));
-        before.into_iter().chain(band).chain(behind).collect::<Vec<_>>()
+        cells(before, band.into_iter().chain(behind))
     };
-    let mut headings = vec![
-        "real part",
-        "imaginary part",
-        "modulus",
-        "growth [1/s]",
-        "frequency [Hz]",
-        "mostly",
-        "share of energy",
-    ];
-    if banded {
-        headings.insert(4, "95 % of samples: growth [1/s]");
-    }
+    let before = ["real part", "imaginary part", "modulus", "growth [1/s]"];
+    let band = banded.then_some("95 % of samples: growth [1/s]");
+    let behind = ["frequency [Hz]", "mostly", "share of energy"];
+    let headings: Vec<_> = before.into_iter().chain(band).chain(behind).collect();
     json!({
         "title": "Multipliers",
         "about": "A small disturbance of the cycle is multiplied by these numbers in every period. It dies away where the modulus is \

@@ -44,7 +44,7 @@ pub fn data(place: &Place) -> Result<Page> {
         let own = || drawn.iter().find(|(name, _)| *name == file);
         let picture = place
             .picture(file)
-            .or_else(|| Some(base64::image("image/svg+xml", own()?.1.as_bytes()).into()))?;
+            .or_else(|| Some(base64::svg(own()?.1.as_bytes()).into()))?;
         Some(json!({"title": title, "picture": picture, "about": about}))
     };
     let figures = [

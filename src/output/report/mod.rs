@@ -204,7 +204,7 @@ impl<'a> Place<'a> {
             let size = fs::metadata(self.path(name)).ok()?.len();
             return Some(json!({"file": name, "bytes": size}));
         }
-        Some(base64::image("image/svg+xml", &bytes).into())
+        Some(base64::svg(&bytes).into())
     }
 
     /// Files beside the page, sorted by name; omits hidden files and folders.
@@ -260,6 +260,11 @@ impl Page {
     fn put(&mut self, key: &str, value: impl Into<Value>) {
         self.data.insert(key.into(), value.into());
     }
+}
+
+/// Cells of a row of a table.
+fn cells(first: impl IntoIterator<Item = Value>, others: impl IntoIterator<Item = Value>) -> Value {
+    first.into_iter().chain(others).collect()
 }
 
 /// Folder of a file that exists or will be written.

@@ -2,7 +2,7 @@
 
 use serde_json::json;
 
-use super::{FolderKind, Page, Place, StoredResult};
+use super::{FolderKind, Page, Place, StoredResult, cells};
 use crate::error::Result;
 use crate::output::numbers::{counted, significant};
 use crate::output::sense as files;
@@ -39,7 +39,7 @@ pub fn data(place: &Place) -> Result<Page> {
             "headings": headings.collect::<Vec<String>>(),
             "rows": found.choice.iter().map(|one| {
                 let first = [json!(one.bladders.len()), json!(files::list(&one.bladders))];
-                first.into_iter().chain(one.errors.iter().map(|error| json!(error))).collect::<Vec<_>>()
+                cells(first, one.errors.iter().map(|error| json!(error)))
             }).collect::<Vec<_>>(),
             "file": files::SENSORS,
         }),
