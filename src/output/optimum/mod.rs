@@ -2,7 +2,7 @@
 
 mod text;
 
-use super::folder::{CASE, ResultFolder};
+use super::folder::ResultFolder;
 use super::numbers::{shortest, significant};
 use super::plot::canvas::{FAINT_INK, LineStyle};
 use super::plot::colour::PALETTE;
@@ -33,15 +33,9 @@ pub const BEST: &str = "optimum-case.json";
 /// # Errors
 /// A file cannot be written.
 pub fn write(folder: &mut ResultFolder, problem: &OptimizationProblem, found: &OptimizedCase) -> Result<()> {
-    let (own, best) = (problem.case.written(), found.case.written());
-    let mut files = vec![
-        (CSV, table(problem, found)),
-        (JSON, results::text(&found.optimum)),
-        (CASE, own.json.clone()),
-        (BEST, best.json.clone()),
-    ];
+    let mut files = vec![(CSV, table(problem, found)), (JSON, results::text(&found.optimum))];
     files.extend(drawn(problem, found).map(|text| (PICTURE, text)));
-    folder.fill_with_both([&own, &best], files).map(|_| ())
+    folder.fill_with_both(&problem.case.written(), (BEST, &found.case.written()), files)
 }
 
 fn table(problem: &OptimizationProblem, found: &OptimizedCase) -> String {

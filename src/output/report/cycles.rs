@@ -2,10 +2,11 @@
 
 use serde_json::{Value, json};
 
-use super::{FolderKind, MOST_ROWS, Page, Place, StoredResult, capital, cells};
+use super::{FolderKind, MOST_ROWS, Page, Place, capital, cells};
 use crate::error::Result;
 use crate::output::bands;
 use crate::output::columns::if_any;
+use crate::output::floquet::points;
 use crate::output::folder::CASE;
 use crate::output::numbers::{counted, significant};
 use crate::output::periodic::{SHOWN, energies, largest};
@@ -14,6 +15,7 @@ use crate::run::floquet::Multiplier;
 use crate::run::floquet::shape::EnergyPart;
 use crate::study::refine::numbers;
 use crate::study::stability::CycleMember;
+use crate::study::stability::tongue::MapPoint;
 
 /// Name of the growth rate of a disturbance.
 const GROWTH: &str = "growth_per_s";
@@ -71,9 +73,7 @@ pub fn of_cycle(found: &CycleResult) -> Value {
 
 /// Page of `floquet`.
 pub fn floquet(place: &Place) -> Result<Page> {
-    let StoredResult { result: found, head } = place.result::<CycleResult>(FolderKind::Floquet.sign())?;
-    let mut page = place.page(FolderKind::Floquet, &found.case, Some(&head));
-    page.warnings.clone_from(&found.warnings);
+    let (found, mut page) = place.begun::<CycleResult>(FolderKind::Floquet, |found| (&found.case, &found.warnings))?;
     let (word, tone) = match found.floquet.verdict.stability {
         CycleStability::Unstable => ("unstable", "bad"),
         CycleStability::Neutral => ("neutral", "fair"),
@@ -92,29 +92,21 @@ pub fn floquet(place: &Place) -> Result<Page> {
 
 /// Page of `floquet --map`.
 pub fn map(place: &Place) -> Result<Page> {
-    let StoredResult { result: found, head } = place.result::<Map>(FolderKind::Map.sign())?;
-    let mut page = place.page(FolderKind::Map, &found.case, Some(&head));
-    page.warnings.clone_from(&found.warnings);
+    let (found, mut page) = place.begun::<Map>(FolderKind::Map, |found| (&found.case, &found.warnings))?;
     let (mut rows, mut answers, mut all) = (vec![], vec![], 0);
     for sheet in &found.sheets {
         let factor = sheet.permeability_factor;
-        let (mut points, mut growing) = (0, 0);
-        for (f, column) in found.frequencies_hz.iter().zip(&sheet.points) {
-            for (a, point) in found.amplitudes_m.iter().zip(column) {
-                points += 1;
-                growing += usize::from(point.grows());
-                if rows.len() < MOST_ROWS {
-                    rows.push(json!([factor, f, a, point.growth_per_s, point.words]));
-                }
-            }
-        }
-        all += points;
+        let count = points(&found, sheet).count();
+        let growing = points(&found, sheet).filter(|(.., point)| point.grows()).count();
+        let row = |(f, a, point): (f64, f64, &MapPoint)| json!([factor, f, a, point.growth_per_s, point.words]);
+        rows.extend(points(&found, sheet).take(MOST_ROWS - rows.len()).map(row));
+        all += count;
         let name = factor.map_or("The dry beam".into(), |f| {
             format!("With permeabilities × {}", significant(f, 2))
         });
         answers.push(format!(
             "{name} the motion grows at {growing} of {}.",
-            counted(points as u64, "point")
+            counted(count as u64, "point")
         ));
     }
     let (columns, lines) = (found.frequencies_hz.len(), found.amplitudes_m.len());
@@ -143,7 +135,7 @@ pub fn map(place: &Place) -> Result<Page> {
 
 /// Page of `periodic --sweep`.
 pub fn sweep(place: &Place) -> Result<Page> {
-    let StoredResult { result: found, head } = place.result::<CyclePath>(FolderKind::Sweep.sign())?;
+    let (found, mut page) = place.begun::<CyclePath>(FolderKind::Sweep, |found| (&found.case, &found.warnings))?;
     let CyclePath {
         pointer,
         members,
@@ -151,8 +143,6 @@ pub fn sweep(place: &Place) -> Result<Page> {
         logarithmic,
         ..
     } = &found;
-    let mut page = place.page(FolderKind::Sweep, &found.case, Some(&head));
-    page.warnings.clone_from(&found.warnings);
     let unstable = |m: &&CycleMember| m.floquet.verdict.stability == CycleStability::Unstable;
     let (low, high) = members.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), m| {
         (l.min(m.value), h.max(m.value))

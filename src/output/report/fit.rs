@@ -2,17 +2,15 @@
 
 use serde_json::json;
 
-use super::{FolderKind, Page, Place, StoredResult, cells};
+use super::{FolderKind, Page, Place, cells};
 use crate::error::Result;
-use crate::output::fit::{CSV, FITTED, JSON, PICTURE};
+use crate::output::fit::{CSV, FITTED, PICTURE};
 use crate::output::numbers::{counted, duration, significant};
 use crate::results::fit::{Bound, Fit, FittedNumber};
 
 /// Page of `fit`.
 pub fn data(place: &Place) -> Result<Page> {
-    let StoredResult { result: found, head } = place.result::<Fit>(JSON)?;
-    let mut page = place.page(FolderKind::Fit, &found.case, Some(&head));
-    page.warnings.clone_from(&found.warnings);
+    let (found, mut page) = place.begun::<Fit>(FolderKind::Fit, |found| (&found.case, &found.warnings))?;
     let tile = |one: &FittedNumber| {
         let error = one
             .standard_error

@@ -195,6 +195,15 @@ impl<'a> Place<'a> {
         super::folder::result(&self.path(name))
     }
 
+    /// Reads the result that identifies a kind and begins its page; `about` returns its case and its warnings.
+    fn begun<T: ResultFile>(&self, kind: FolderKind, about: impl Fn(&T) -> (&str, &[String])) -> Result<(T, Page)> {
+        let StoredResult { result, head } = self.result::<T>(kind.sign())?;
+        let (case, warnings) = about(&result);
+        let mut page = self.page(kind, case, Some(&head));
+        page.warnings = warnings.to_vec();
+        Ok((result, page))
+    }
+
     /// A picture of the folder as image data; for one that is too large, its file and size.
     fn picture(&self, name: &str) -> Option<Value> {
         let mut bytes = vec![];

@@ -5,11 +5,11 @@ use std::path::Path;
 
 use serde_json::{Map, Value, json};
 
-use super::{FolderKind, Page, Place, StoredResult, base64, capital, csv_table};
+use super::{FolderKind, Page, Place, base64, capital, csv_table};
 use crate::error::Result;
 use crate::output::bands;
 use crate::output::folder::CASE;
-use crate::output::modes::{ARRAYS, CSV, JSON, PICTURE};
+use crate::output::modes::{ARRAYS, CSV, PICTURE};
 use crate::output::npz::Npz;
 use crate::output::numbers::{counted, significant};
 use crate::results::modes::{LinearisedState, ModesRecord};
@@ -32,15 +32,13 @@ const MOST_NUMBERS: usize = 420_000;
 
 /// Data of the page.
 pub fn data(place: &Place) -> Result<Page> {
-    let StoredResult { result: found, head } = place.result::<ModesRecord>(JSON)?;
-    let mut page = place.page(FolderKind::Modes, &found.case, Some(&head));
+    let (found, mut page) = place.begun::<ModesRecord>(FolderKind::Modes, |found| (&found.case, &found.warnings))?;
     let (word, tone) = if found.stable {
         ("stable", "good")
     } else {
         ("unstable", "bad")
     };
     let table = csv_table::read(&place.path(CSV), |name| COLUMNS.contains(&name));
-    page.warnings.clone_from(&found.warnings);
     let shapes = shapes(&place.path(ARRAYS));
     if let Some(e) = shapes.as_ref().err().filter(|e| e.kind() != io::ErrorKind::NotFound) {
         let warning = format!("{ARRAYS} cannot be read ({e}), so no shapes are shown.");

@@ -2,19 +2,17 @@
 
 use serde_json::json;
 
-use super::{FolderKind, Page, Place, StoredResult};
+use super::{FolderKind, Page, Place};
 use crate::error::Result;
 use crate::output::numbers::{duration, percent, quantity, significant};
-use crate::output::optimum::{BEST, CSV, JSON, PICTURE, place as position, ranked};
+use crate::output::optimum::{BEST, CSV, PICTURE, place as position, ranked};
 use crate::output::sweep::text::several;
 use crate::output::sweep::unit;
 use crate::results::optimum::{DerivativeSource, Optimum, Variable};
 
 /// Page of `optimize`.
 pub fn data(place: &Place) -> Result<Page> {
-    let StoredResult { result: found, head } = place.result::<Optimum>(JSON)?;
-    let mut page = place.page(FolderKind::Optimum, &found.case, Some(&head));
-    page.warnings.clone_from(&found.warnings);
+    let (found, mut page) = place.begun::<Optimum>(FolderKind::Optimum, |found| (&found.case, &found.warnings))?;
     let goal = &found.goal;
     // a figure with its unit
     let figure = |value: f64| quantity(value, unit(&goal.figure), 5);

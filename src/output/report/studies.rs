@@ -2,7 +2,7 @@
 
 use serde_json::{Value, json};
 
-use super::{FolderKind, Page, Place, StoredResult, capital};
+use super::{FolderKind, Page, Place, capital};
 use crate::error::Result;
 use crate::output::effects::{self as effects_files, Bar, ShownQuantity};
 use crate::output::folder::CASE;
@@ -25,10 +25,8 @@ fn method(scheme: Scheme) -> String {
 
 /// Page of `study`: cost of accuracy.
 pub fn study(place: &Place) -> Result<Page> {
-    let StoredResult { result: found, head } = place.result::<Study>(study_files::JSON)?;
-    let mut page = place.page(FolderKind::Study, &found.case, Some(&head));
+    let (found, mut page) = place.begun::<Study>(FolderKind::Study, |found| (&found.case, &found.notes))?;
     let measure = found.measure().map_or("", |measure| measure.name.as_str());
-    page.warnings.clone_from(&found.notes);
     let row = |(k, point): (usize, &StudyPoint)| {
         let (trial, error) = (&point.trial, found.error(k));
         let setting = trial.setting;
@@ -179,8 +177,7 @@ fn options(plan: &StudyPlan) -> String {
 
 /// Page of `effects`: change of results without each effect.
 pub fn effects(place: &Place) -> Result<Page> {
-    let StoredResult { result: found, head } = place.result::<Ablation>(effects_files::JSON)?;
-    let mut page = place.page(FolderKind::Effects, &found.case, Some(&head));
+    let (found, mut page) = place.begun::<Ablation>(FolderKind::Effects, |found| (&found.case, &[]))?;
     let row = |r: &AblationRow| -> Value {
         let left_out = r.left_out.as_ref();
         let largest = left_out.and_then(|c| c.largest.as_ref());
