@@ -158,32 +158,36 @@ pub fn describe(mode: &Mode) -> String {
     }
 }
 
+/// Columns of numbers in `modes.csv`.
+#[rustfmt::skip]
+const COLUMNS: [(&str, fn(&Mode) -> Option<f64>); 14] = [
+    ("frequency [Hz]", |mode| mode.frequency_hz()),
+    ("damping ratio [1]", |mode| mode.damping_ratio()),
+    ("growth rate [1/s]", |mode| Some(mode.s.re)),
+    ("time constant [s]", |mode| mode.time_s()),
+    ("error bound [1/s]", |mode| Some(mode.error)),
+    ("residual [1]", |mode| Some(mode.residual)),
+    ("transverse share [1]", |mode| Some(mode.shape.transverse())),
+    ("undrained frequency [Hz]", |mode| mode.undrained.map(|l| l.frequency_hz)),
+    ("undrained likeness [1]", |mode| mode.undrained.map(|l| l.likeness)),
+    ("drained frequency [Hz]", |mode| mode.drained.map(|l| l.frequency_hz)),
+    ("drained likeness [1]", |mode| mode.drained.map(|l| l.likeness)),
+    ("frequency on half the cells [Hz]", |mode| mode.coarse.map(|l| l.frequency_hz)),
+    ("extrapolated frequency [Hz]", |mode| mode.extrapolated_hz()),
+    ("extrapolated growth rate [1/s]", |mode| mode.extrapolated().map(|s| s.re)),
+];
+
 /// Text of `modes.csv`: one row per mode; cells without a number are empty.
 pub fn csv(report: &Report) -> String {
-    let headings = "mode [1],kind,frequency [Hz],damping ratio [1],growth rate [1/s],time constant [s],error bound [1/s],residual [1],\
-                    transverse share [1],undrained frequency [Hz],undrained likeness [1],drained frequency [Hz],drained likeness [1],\
-                    frequency on half the cells [Hz],extrapolated frequency [Hz],extrapolated growth rate [1/s]";
+    let headings = ["mode [1]", "kind"]
+        .into_iter()
+        .chain(COLUMNS.map(|(heading, _)| heading));
     let rows = report.found.modes.iter().enumerate().map(|(k, mode)| {
-        let [undrained, drained] = [&mode.undrained, &mode.drained].map(Option::as_ref);
-        let numbers = [
-            mode.frequency_hz(),
-            mode.damping_ratio(),
-            Some(mode.s.re),
-            mode.time_s(),
-            Some(mode.error),
-            Some(mode.residual),
-            Some(mode.shape.transverse()),
-            undrained.map(|l| l.frequency_hz),
-            undrained.map(|l| l.likeness),
-            drained.map(|l| l.frequency_hz),
-            drained.map(|l| l.likeness),
-            mode.coarse.map(|l| l.frequency_hz),
-            mode.extrapolated_hz(),
-            mode.extrapolated().map(|s| s.re),
-        ];
-        let mut row = vec![(k + 1).to_string(), mode.kind.word().into()];
-        row.extend(numbers.map(number));
-        row
+        let first = [(k + 1).to_string(), mode.kind.word().into()];
+        first
+            .into_iter()
+            .chain(COLUMNS.map(|(_, of)| number(of(mode))))
+            .collect()
     });
-    records::text(headings.split(','), rows)
+    records::text(headings, rows)
 }

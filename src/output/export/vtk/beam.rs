@@ -38,20 +38,14 @@ pub(super) fn surface(cutout: &Cutout, curve: &Curve, sections: &[SectionPositio
     for (k, pair) in sections.windows(2).enumerate() {
         let open = cutout.beside_bladder(pair[0].theta, pair[1].theta);
         // The sides are divided at the edges of the rows; every second strip is a row.
+        let mut face = |corners: [usize; 4]| out.quads.push(corners);
         for i in (0..m - 1).filter(|i| !(open && i % 2 == 1)) {
-            out.quads
-                .push([at(k, 1, i), at(k + 1, 1, i), at(k + 1, 1, i + 1), at(k, 1, i + 1)]);
-            out.quads
-                .push([at(k, 0, i), at(k, 0, i + 1), at(k + 1, 0, i + 1), at(k + 1, 0, i)]);
+            face([at(k, 1, i), at(k + 1, 1, i), at(k + 1, 1, i + 1), at(k, 1, i + 1)]);
+            face([at(k, 0, i), at(k, 0, i + 1), at(k + 1, 0, i + 1), at(k + 1, 0, i)]);
         }
-        out.quads
-            .push([at(k, 0, 0), at(k + 1, 0, 0), at(k + 1, 1, 0), at(k, 1, 0)]);
-        out.quads.push([
-            at(k, 0, m - 1),
-            at(k, 1, m - 1),
-            at(k + 1, 1, m - 1),
-            at(k + 1, 0, m - 1),
-        ]);
+        let top = m - 1;
+        face([at(k, 0, 0), at(k + 1, 0, 0), at(k + 1, 1, 0), at(k, 1, 0)]);
+        face([at(k, 0, top), at(k, 1, top), at(k + 1, 1, top), at(k + 1, 0, top)]);
         cells.resize(out.quads.len(), curve.cell(pair[0].theta, pair[1].theta));
     }
     let last = sections.len() - 1;
