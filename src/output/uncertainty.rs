@@ -126,35 +126,28 @@ fn mostly(one: &FigureSpread, inputs: &[UncertainInput]) -> Option<String> {
 
 /// Section of a page.
 pub fn section(found: &Uncertainty) -> Value {
-    let rows: Vec<_> = found
-        .figures
-        .iter()
-        .map(|(name, one)| row(name, one, &found.inputs))
-        .collect();
+    let rows = found.figures.iter();
+    let rows: Vec<_> = rows.map(|(name, one)| row(name, one, &found.inputs)).collect();
     let mut tables = vec![json!({
         "title": null,
         "about": "Standard deviations and the numerical error are relative to the figure of the case itself. First order: from \
                   derivatives at the means. Samples: from simulations with random values of the uncertain numbers.",
         "headings": HEADINGS, "rows": rows, "file": UNCERTAINTY,
     })];
-    let indexed = found
-        .figures
-        .iter()
-        .filter_map(|(name, one)| Some((name, one.indices.as_ref()?)));
-    let indices: Vec<[Value; 6]> = indexed
-        .flat_map(|(name, indices)| {
-            found.inputs.iter().zip(indices).map(move |(input, index)| {
-                [
-                    json!(name),
-                    json!(input.pointer),
-                    json!(index.first),
-                    json!(index.first_error),
-                    json!(index.total),
-                    json!(index.total_error),
-                ]
-            })
-        })
-        .collect();
+    let mut indices = vec![];
+    for (name, one) in &found.figures {
+        for (input, i) in found.inputs.iter().zip(one.indices.iter().flatten()) {
+            let [alone, with_others] = [[i.first, i.first_error], [i.total, i.total_error]];
+            indices.push(json!([
+                name,
+                input.pointer,
+                alone[0],
+                alone[1],
+                with_others[0],
+                with_others[1]
+            ]));
+        }
+    }
     if !indices.is_empty() {
         tables.push(json!({
             "title": "Shares of the variance",
@@ -164,10 +157,8 @@ pub fn section(found: &Uncertainty) -> Value {
             "rows": indices, "file": null,
         }));
     }
-    let no_first_order = found
-        .no_first_order
-        .iter()
-        .map(|why| format!("There is no first order: {why}."));
+    let no_first_order = found.no_first_order.iter();
+    let no_first_order = no_first_order.map(|why| format!("There is no first order: {why}."));
     let notes: Vec<String> = no_first_order.chain(found.warnings.iter().cloned()).collect();
     json!({"about": about(found).trim_end_matches(':'), "tables": tables, "notes": notes})
 }

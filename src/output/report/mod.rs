@@ -225,12 +225,12 @@ impl<'a> Place<'a> {
 
     /// Common part of every page, with the given name.
     fn page(&self, kind: FolderKind, name: &str, head: Option<&Head>) -> Page {
-        let numbers = self.case.as_ref().map(facts::characteristic_of);
-        self.page_with(kind, name, head, numbers.unwrap_or_default())
+        self.page_with(kind, name, head, None)
     }
 
-    /// [`Place::page`] with given rows of characteristic numbers.
-    fn page_with(&self, kind: FolderKind, name: &str, head: Option<&Head>, numbers: Vec<Value>) -> Page {
+    /// [`Place::page`] with given rows of characteristic numbers, by default those of the case.
+    fn page_with(&self, kind: FolderKind, name: &str, head: Option<&Head>, numbers: Option<Vec<Value>>) -> Page {
+        let numbers = numbers.or_else(|| self.case.as_ref().map(facts::characteristic_of));
         let mut page = Page {
             name: name.into(),
             ..Page::default()
@@ -241,7 +241,7 @@ impl<'a> Place<'a> {
             "about": self.case.as_ref().map_or("", |c| c.about.as_str()), "files": self.files(),
             "cell": self.case.as_ref().map_or_else(Vec::new, cell::of_case), "scene": self.case.as_ref().and_then(scene::to_json),
             // placeholder: see `text`
-            "parameters": null, "case_text": text, "characteristic": numbers,
+            "parameters": null, "case_text": text, "characteristic": numbers.unwrap_or_default(),
         }));
         page
     }
