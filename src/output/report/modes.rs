@@ -88,11 +88,10 @@ fn with_bands(mut table: Value, found: &ModesRecord) -> Value {
         ("frequency [Hz]", "frequency_hz"),
         ("growth rate [1/s]", "growth_per_s"),
     ] {
-        let headings = table["headings"].as_array_mut();
-        let Some((headings, place)) = headings.and_then(|all| {
-            let place = all.iter().position(|own| own == heading)?;
-            Some((all, place + 1))
-        }) else {
+        let Some(headings) = table["headings"].as_array_mut() else {
+            continue;
+        };
+        let Some(place) = headings.iter().position(|own| own == heading).map(|k| k + 1) else {
             continue;
         };
         headings.insert(place, json!(format!("95 % of samples: {heading}")));

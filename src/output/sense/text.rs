@@ -72,13 +72,16 @@ pub fn about_sight(found: &Sensed) -> String {
     if determined.len() > MANY {
         text += &format!("  determined individually: {}\n", listed(&determined));
     } else {
-        text.extend(determined.iter().filter_map(|a| {
-            let error = significant(a.error_per_pa?, 3);
-            Some(format!(
-                "  {} is determined: its standard error is {error} {} per Pa of noise\n",
-                a.name, a.unit
-            ))
-        }));
+        for Unknown {
+            name,
+            unit,
+            error_per_pa,
+            ..
+        } in determined
+        {
+            let error = significant(error_per_pa.unwrap_or_default(), 3);
+            text += &format!("  {name} is determined: its standard error is {error} {unit} per Pa of noise\n");
+        }
     }
     let lost: Vec<&Unknown> = found.amplitudes.iter().filter(|a| !alone(a)).collect();
     if !lost.is_empty() {
@@ -94,10 +97,8 @@ pub fn about_sight(found: &Sensed) -> String {
         );
     } else {
         for one in together {
-            text += &format!(
-                "  determined only together: {} [{}], numbers in SI units\n",
-                one.name, one.unit
-            );
+            let (name, unit) = (&one.name, &one.unit);
+            text += &format!("  determined only together: {name} [{unit}], numbers in SI units\n");
         }
     }
     if blind.len() > MANY {
@@ -291,22 +292,15 @@ pub fn list(bladders: &[i64]) -> String {
 
 /// Table of the best bladders to measure.
 fn sensors(found: &Sensed) -> String {
-    let errors: String = found
-        .amplitudes
-        .iter()
-        .map(|a| format!(" | {} [{}]", a.name, a.unit))
-        .collect();
-    let mut lines = vec![];
-    for one in found.choice.iter().take(ROWS) {
+    let amplitudes = found.amplitudes.iter();
+    let errors: String = amplitudes.map(|a| format!(" | {} [{}]", a.name, a.unit)).collect();
+    let error = |e: &Option<f64>| e.map_or("not determined".into(), |e| significant(e, 3));
+    let lines = found.choice.iter().take(ROWS).map(|one| {
         let mut line = vec![one.bladders.len().to_string()];
-        line.extend(
-            one.errors
-                .iter()
-                .map(|e| e.map_or("not determined".into(), |e| significant(e, 3))),
-        );
+        line.extend(one.errors.iter().map(error));
         line.push(list(&one.bladders));
-        lines.push(line);
-    }
+        line
+    });
     let more = if_any(found.choice.len().saturating_sub(ROWS), |n| {
         format!("{n} more in sensors.csv\n")
     });
