@@ -158,9 +158,12 @@ pub fn describe(mode: &Mode) -> String {
     }
 }
 
+/// Heading and number of a column.
+type ModeColumn = (&'static str, fn(&Mode) -> Option<f64>);
+
 /// Columns of numbers in `modes.csv`.
 #[rustfmt::skip]
-const COLUMNS: [(&str, fn(&Mode) -> Option<f64>); 14] = [
+const COLUMNS: [ModeColumn; 14] = [
     ("frequency [Hz]", |mode| mode.frequency_hz()),
     ("damping ratio [1]", |mode| mode.damping_ratio()),
     ("growth rate [1/s]", |mode| Some(mode.s.re)),

@@ -30,10 +30,10 @@ pub fn sentence(study: &Study) -> String {
             // The cheapest run of all is more accurate than requested, so it also answers the looser question.
             parts.pop();
         }
-        let of = parts
-            .is_empty()
-            .then(|| format!(" of {}", spoken(&measure.name)))
-            .unwrap_or_default();
+        let of = match parts.is_empty() {
+            true => format!(" of {}", spoken(&measure.name)),
+            false => String::new(),
+        };
         let price = price(trial.wall_min_s, trial.setting, &schemes);
         parts.push(format!("{accuracy}{of} costs {price}"));
         last = Some(k);
@@ -82,9 +82,10 @@ fn foot(study: &Study) -> Option<String> {
     let setting = study.points[foot.cheapest].trial.setting;
     let factor = significant(foot.factor, 2);
     let cells = counted(setting.cells as u64, "cell");
-    let with = (!answering)
-        .then(|| format!(" with {cells} and {}", setting.scheme))
-        .unwrap_or_default();
+    let with = match answering {
+        true => String::new(),
+        false => format!(" with {cells} and {}", setting.scheme),
+    };
     Some(format!(
         "looser than rtol {:e} costs more, not less{with} (up to {factor} times)",
         setting.rtol
