@@ -1,5 +1,6 @@
 //! Text about a requested accuracy.
 
+use super::columns::{bracketed, if_any};
 use super::numbers::{counted, error_percent, significant};
 use crate::run::summary::{Accuracy, ErrorEstimate};
 
@@ -24,10 +25,9 @@ pub fn reached(found: &Accuracy) -> String {
 
 /// Mesh, tolerance, and the number of coarser computations before.
 pub fn setting(found: &Accuracy) -> String {
-    let before = match found.pilots.len() {
-        0 => String::new(),
-        n => format!(", after {}", counted(n as u64, "coarser computation")),
-    };
+    let before = if_any(found.pilots.len(), |n| {
+        format!(", after {}", counted(n as u64, "coarser computation"))
+    });
     let rtol = significant(found.rtol, 1);
     format!(
         "{}, {} a bladder, rtol {rtol}{before}",
@@ -48,12 +48,7 @@ pub fn largest(found: &Accuracy) -> Vec<String> {
         let parts = parts
             .iter()
             .filter_map(|(what, part)| Some(format!("{what} {}", error_percent((*part)?))));
-        let parts: Vec<String> = parts.collect();
-        let parts = match parts.len() {
-            0 => String::new(),
-            _ => format!(" ({})", parts.join(", ")),
-        };
-        format!("{name} {}{parts}", error_percent(total))
+        format!("{name} {}{}", error_percent(total), bracketed(parts, ", "))
     });
     texts.collect()
 }

@@ -45,14 +45,18 @@ impl ArraysWriter {
     /// Creates the folder `dir` and the raw files in it.
     pub fn create(dir: &Path, header: &Header) -> Result<Self> {
         fs::create_dir_all(dir).map_err(|e| fault("create", dir, e))?;
-        let raw = header.fields.iter().map(|f| RawFile::create(dir, f.name));
+        Self::open(dir, header, 0, |name| RawFile::create(dir, name))
+    }
+
+    fn open(dir: &Path, header: &Header, instants: u64, file: impl Fn(&str) -> Result<RawFile>) -> Result<Self> {
+        let raw = header.fields.iter().map(|f| file(f.name));
         Ok(Self {
             dir: dir.to_path_buf(),
             axes: header.axes.clone(),
             fields: header.fields.clone(),
-            times: RawFile::create(dir, TIMES)?,
             raw: raw.collect::<Result<_>>()?,
-            instants: 0,
+            times: file(TIMES)?,
+            instants,
             flushed: Instant::now(),
         })
     }
@@ -77,16 +81,8 @@ impl ArraysWriter {
     /// Opens the verified raw files of an interrupted run and truncates them at the marks.
     pub fn reopen(dir: &Path, header: &Header, marks: &Marks) -> Result<Self> {
         let mark = |name: &str| marks.get(name).copied().unwrap_or(StreamMark { bytes: 0, crc32: 0 });
-        let raw = header.fields.iter().map(|f| RawFile::reopen(dir, f.name, mark(f.name)));
-        Ok(Self {
-            dir: dir.to_path_buf(),
-            axes: header.axes.clone(),
-            fields: header.fields.clone(),
-            times: RawFile::reopen(dir, TIMES, mark(TIMES))?,
-            raw: raw.collect::<Result<_>>()?,
-            instants: mark(TIMES).bytes / 8,
-            flushed: Instant::now(),
-        })
+        let instants = mark(TIMES).bytes / 8;
+        Self::open(dir, header, instants, |name| RawFile::reopen(dir, name, mark(name)))
     }
 
     /// Syncs all instants to the disk and returns the marks.

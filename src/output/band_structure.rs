@@ -54,7 +54,7 @@ fn csv(found: &BandsRecord) -> String {
             .chain([energy.motion.name().into(), error])
             .collect::<Vec<String>>()
     };
-    records::text(COLUMNS.into_iter(), found.waves.iter().map(row))
+    records::text(COLUMNS, found.waves.iter().map(row))
 }
 
 /// Tables of gaps and of standing waves.

@@ -10,7 +10,7 @@ use std::sync::OnceLock;
 
 use serde::{Deserialize, Serialize};
 
-use super::arrays::Marks;
+use super::downsampled_history::SyncedPart;
 use super::folder::{CHECKPOINT, CHECKPOINT_BEFORE, ResultFolder, damaged, fault, open};
 use super::stream::StreamMark;
 use crate::error::Result;
@@ -22,16 +22,9 @@ const FORMAT: u32 = 14;
 /// A checkpoint on disk.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct SavedCheckpoint {
-    /// Mark of `history.csv`.
-    pub history: StreamMark,
-    /// Mark of `envelope.csv`, if it exists.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub envelope: Option<StreamMark>,
-    /// Mark of `sensitivities.csv`, if it exists.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub sensitivities: Option<StreamMark>,
-    /// Marks of the raw files of fields.
-    pub fields: Marks,
+    /// Marks of its files.
+    #[serde(flatten)]
+    pub files: SyncedPart,
     /// The run.
     pub run: Checkpoint,
 }

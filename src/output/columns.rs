@@ -8,9 +8,27 @@ pub fn cells<const N: usize>(row: &str) -> [&str; N] {
     [(); N].map(|()| cells.next().unwrap_or_default())
 }
 
+/// Texts with a separator between them.
+pub fn joined(texts: impl IntoIterator<Item = String>, between: &str) -> String {
+    texts.into_iter().collect::<Vec<_>>().join(between)
+}
+
+/// Texts in brackets behind a space; empty without texts.
+pub fn bracketed(texts: impl IntoIterator<Item = String>, between: &str) -> String {
+    match joined(texts, between) {
+        all if all.is_empty() => all,
+        all => format!(" ({all})"),
+    }
+}
+
+/// Text about a number of things; empty for none.
+pub fn if_any(count: usize, text: impl FnOnce(usize) -> String) -> String {
+    if count == 0 { String::new() } else { text(count) }
+}
+
 /// Warnings, one per line.
-pub fn warnings(all: &[String]) -> String {
-    all.iter().map(|warning| format!("warning: {warning}\n")).collect()
+pub fn warnings<'a>(all: impl IntoIterator<Item = &'a String>) -> String {
+    all.into_iter().map(|warning| format!("warning: {warning}\n")).collect()
 }
 
 /// Table under headings separated by ` | `: `name | <words`. Cells are right-aligned, or left-aligned in columns whose heading begins with

@@ -10,6 +10,8 @@ use std::sync::mpsc::{self, Receiver, Sender, SyncSender};
 use std::thread::{Builder, JoinHandle};
 use std::time::{Duration, Instant};
 
+use serde::{Deserialize, Serialize};
+
 use super::arrays::{ArraysWriter, Marks};
 use super::envelope::HistoryInMemory;
 use super::folder::{HISTORY, fault};
@@ -41,23 +43,18 @@ pub struct GrowingFiles {
 }
 
 /// Part of each file that is safe on the disk.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct SyncedPart {
-    /// The tables.
-    pub tables: Tables,
-    /// Fields.
-    pub arrays: Marks,
-}
-
-/// Part of each table that is safe on the disk.
-#[derive(Clone, Copy, Debug)]
-pub struct Tables {
-    /// The history.
+    /// Mark of `history.csv`.
     pub history: StreamMark,
-    /// Statistics over output times that the history leaves out.
+    /// Mark of `envelope.csv`, if it exists.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub envelope: Option<StreamMark>,
-    /// Derivatives.
+    /// Mark of `sensitivities.csv`, if it exists.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub sensitivities: Option<StreamMark>,
+    /// Marks of the raw files of fields.
+    pub fields: Marks,
 }
 
 impl GrowingFiles {
@@ -65,12 +62,10 @@ impl GrowingFiles {
     pub fn secure(&mut self) -> Result<SyncedPart> {
         let secured = |rows: &mut Option<HistoryWriter>| rows.as_mut().map(HistoryWriter::secure).transpose();
         Ok(SyncedPart {
-            tables: Tables {
-                history: self.history.secure()?,
-                envelope: secured(&mut self.envelope)?,
-                sensitivities: secured(&mut self.sensitivities)?,
-            },
-            arrays: self.arrays.secure()?,
+            history: self.history.secure()?,
+            envelope: secured(&mut self.envelope)?,
+            sensitivities: secured(&mut self.sensitivities)?,
+            fields: self.arrays.secure()?,
         })
     }
 

@@ -24,19 +24,22 @@ impl Extremes {
     }
 
     /// Joins two stretches; NaN loses against any number.
-    fn join(self, other: Self) -> Self {
-        let beats = |a: f64, b: f64, less: bool| b.is_nan() || if less { a < b } else { a > b };
-        let least = if beats(other.least.1, self.least.1, true) {
-            other.least
-        } else {
-            self.least
-        };
-        let largest = if beats(other.largest.1, self.largest.1, false) {
-            other.largest
-        } else {
-            self.largest
-        };
-        Self { least, largest }
+    fn join(mut self, other: Self) -> Self {
+        if self.least.1.is_nan() || other.least.1 < self.least.1 {
+            self.least = other.least;
+        }
+        if self.largest.1.is_nan() || other.largest.1 > self.largest.1 {
+            self.largest = other.largest;
+        }
+        self
+    }
+
+    /// Both values in the order of their times.
+    fn in_order(self) -> [(f64, f64); 2] {
+        match self.least.0 <= self.largest.0 {
+            true => [self.least, self.largest],
+            false => [self.largest, self.least],
+        }
     }
 }
 
@@ -52,34 +55,34 @@ pub struct Envelope {
 }
 
 impl Envelope {
-    /// Creates an envelope of columns with these names and units; it keeps at most `most` stretches.
-    pub fn new(names: Vec<(String, String)>, most: usize) -> Self {
+    /// An empty envelope; it keeps at most `most` stretches.
+    pub fn new(most: usize) -> Self {
         Self {
-            names,
-            stretches: Vec::new(),
             most: most.max(2),
             rows_a_stretch: 1,
-            rows_in_last: 0,
+            ..Self::default()
         }
     }
 
     /// Reads a history. If not all of it was written, the envelope file replaces it before the window. Skips an incomplete last line of a
     /// killed run.
     pub fn read(history: HistorySource, most: usize) -> Result<Self> {
-        let mut envelope = Self::new(vec![], most);
-        each_row(history, |names, source, row| {
-            if envelope.names.is_empty() {
-                envelope.names = names.to_vec();
-            }
-            if source != RowOrigin::Covered {
-                envelope.push(row);
-            }
-        })?;
+        let mut envelope = Self::new(most);
+        each_row(history, |names, origin, row| envelope.add(names, origin, row))?;
         Ok(envelope)
     }
 
-    /// Adds a row; the first column is time.
-    pub fn push(&mut self, row: &[f64]) {
+    /// Adds a row of these columns, of which the first is time; skips a covered row.
+    pub fn add(&mut self, names: &Names, origin: RowOrigin, row: &[f64]) {
+        if self.names.is_empty() {
+            self.names = names.to_vec();
+        }
+        if origin != RowOrigin::Covered {
+            self.push(row);
+        }
+    }
+
+    fn push(&mut self, row: &[f64]) {
         let columns = self.names.len();
         let new = row.iter().map(|&y| Extremes::new(row[0], y));
         if self.rows_in_last == 0 || self.rows_in_last == self.rows_a_stretch {
@@ -129,11 +132,7 @@ impl Envelope {
     pub fn points(&self, column: usize) -> Vec<(f64, f64)> {
         let mut points = Vec::new();
         for e in self.stretches.iter().skip(column).step_by(self.names.len().max(1)) {
-            let (first, second) = if e.least.0 <= e.largest.0 {
-                (e.least, e.largest)
-            } else {
-                (e.largest, e.least)
-            };
+            let [first, second] = e.in_order();
             points.push(first);
             if second.0 > first.0 {
                 points.push(second);
@@ -151,11 +150,7 @@ impl Envelope {
             let time = stretch[0];
             let single = time.largest.1 <= time.least.1;
             for (column, e) in columns.iter_mut().zip(stretch) {
-                let (first, second) = if e.least.0 <= e.largest.0 {
-                    (e.least, e.largest)
-                } else {
-                    (e.largest, e.least)
-                };
+                let [first, second] = e.in_order();
                 column.push(first.1);
                 if !single {
                     column.push(second.1);

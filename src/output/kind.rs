@@ -3,6 +3,7 @@
 use std::io;
 use std::path::{Path, PathBuf};
 
+use super::columns::joined;
 use super::folder::{HISTORY, RUN_FILES, SUMMARY, entries, fault, name_of};
 use super::uncertainty::UNCERTAINTY;
 use crate::error::{Error, Result};
@@ -62,68 +63,49 @@ impl FolderKind {
         Self::Bands,
     ];
 
-    /// Name on the page, command, and identifying file.
-    fn labels(self) -> [&'static str; 3] {
+    /// Name on the page, command, identifying file, and all other files that the command itself writes.
+    #[rustfmt::skip]
+    fn entry(self) -> (&'static str, &'static str, &'static str, &'static [&'static str]) {
         match self {
-            Self::Run => ["run", "run", SUMMARY],
-            Self::Equilibrium => ["equilibrium", "equilibrium", "equilibrium.json"],
-            Self::Modes => ["modes", "modes", "modes.json"],
-            Self::Study => ["study", "study", "study.json"],
-            Self::Effects => ["effects", "effects", "effects.json"],
-            Self::Floquet => ["floquet", "floquet", "floquet.json"],
-            Self::Map => ["map", "floquet --map", "map.json"],
-            Self::Cycle => ["run", "periodic", "cycle.json"],
-            Self::Sweep => ["sweep", "periodic --sweep", "sweep.json"],
-            Self::Designs => ["designs", "sweep", "plan.json"],
-            Self::Fit => ["fit", "fit", "fit.json"],
-            Self::Sense => ["sense", "sense", "sense.json"],
-            Self::Optimum => ["optimum", "optimize", "optimum.json"],
-            Self::Response => ["response", "response", "response.json"],
-            Self::Bands => ["bands", "bands", "bands.json"],
+            Self::Run => ("run", "run", SUMMARY, &RUN_FILES),
+            Self::Equilibrium => ("equilibrium", "equilibrium", "equilibrium.json", &["path.csv", "shapes.csv", "path.svg", UNCERTAINTY]),
+            Self::Modes => ("modes", "modes", "modes.json", &["modes.csv", "modes.npz", "modes.svg", UNCERTAINTY]),
+            Self::Study => ("study", "study", "study.json", &["study.csv", "study.svg"]),
+            Self::Effects => ("effects", "effects", "effects.json", &["effects.csv", "effects.svg"]),
+            Self::Floquet => ("floquet", "floquet", "floquet.json", &["floquet.csv", "floquet.svg", UNCERTAINTY]),
+            Self::Map => ("map", "floquet --map", "map.json", &["map.csv", "map.svg"]),
+            Self::Cycle => ("run", "periodic", "cycle.json", &RUN_FILES),
+            Self::Sweep => ("sweep", "periodic --sweep", "sweep.json", &["sweep.csv", "sweep.svg"]),
+            Self::Designs => ("designs", "sweep", "plan.json", &["designs.jsonl", "sweep.json", "sweep.csv", "sweep.npz", "sweep.svg", "map.svg"]),
+            Self::Fit => ("fit", "fit", "fit.json", &["fit.csv", "fit.svg", "fitted-case.json"]),
+            Self::Sense => ("sense", "sense", "sense.json", &["sense.csv", "sensors.csv", "sense.svg"]),
+            Self::Optimum => ("optimum", "optimize", "optimum.json", &["designs.csv", "optimum.svg", "optimum-case.json"]),
+            Self::Response => ("response", "response", "response.json", &["response.csv", "response.svg"]),
+            Self::Bands => ("bands", "bands", "bands.json", &["bands.csv", "bands.svg"]),
         }
     }
 
     /// Name on the page.
     pub fn name(self) -> &'static str {
-        self.labels()[0]
+        self.entry().0
     }
 
     /// The command, as it is typed.
     pub fn command(self) -> &'static str {
-        self.labels()[1]
+        self.entry().1
     }
 
     /// File that identifies the kind. It is written last, except the plan of `sweep`, which is written first.
     pub fn sign(self) -> &'static str {
-        self.labels()[2]
+        self.entry().2
     }
 
     /// All files that the command itself writes, the identifying file first; case and page are additional.
     pub fn files(self) -> Vec<&'static str> {
-        let own: &[&str] = match self {
-            Self::Run | Self::Cycle => &RUN_FILES,
-            Self::Equilibrium => &["path.csv", "shapes.csv", "path.svg", UNCERTAINTY],
-            Self::Modes => &["modes.csv", "modes.npz", "modes.svg", UNCERTAINTY],
-            Self::Study => &["study.csv", "study.svg"],
-            Self::Effects => &["effects.csv", "effects.svg"],
-            Self::Floquet => &["floquet.csv", "floquet.svg", UNCERTAINTY],
-            Self::Map => &["map.csv", "map.svg"],
-            Self::Sweep => &["sweep.csv", "sweep.svg"],
-            Self::Sense => &["sense.csv", "sensors.csv", "sense.svg"],
-            Self::Designs => &[
-                "designs.jsonl",
-                "sweep.json",
-                "sweep.csv",
-                "sweep.npz",
-                "sweep.svg",
-                "map.svg",
-            ],
-            Self::Fit => &["fit.csv", "fit.svg", "fitted-case.json"],
-            Self::Response => &["response.csv", "response.svg"],
-            Self::Bands => &["bands.csv", "bands.svg"],
-            Self::Optimum => &["designs.csv", "optimum.svg", "optimum-case.json"],
-        };
-        [self.sign()].into_iter().chain(own.iter().copied()).collect()
+        [self.sign()]
+            .into_iter()
+            .chain(self.entry().3.iter().copied())
+            .collect()
     }
 
     /// True if a command writes a file of this name.
@@ -170,10 +152,7 @@ impl FolderKind {
         }
         let what = match dir.is_dir() {
             true => {
-                let signs: Vec<String> = Self::ALL
-                    .iter()
-                    .map(|kind| format!("{} ({})", kind.sign(), kind.command()))
-                    .collect();
+                let signs = Self::ALL.map(|kind| format!("{} ({})", kind.sign(), kind.command()));
                 format!("it contains no result; expected one of {}", signs.join(", "))
             }
             false => NOWHERE.into(),
@@ -187,11 +166,8 @@ impl FolderKind {
     ///
     /// The folder does not exist or contains something else; the message names what is expected and found, and a suitable result nearby.
     pub fn wanted(action: &'static str, dir: &Path, kinds: &[Self]) -> Result<Self> {
-        let commands: Vec<String> = kinds
-            .iter()
-            .map(|kind| format!("`slcbeam {}`", kind.command()))
-            .collect();
-        let wanted = format!("a result of {} is needed", commands.join(" or "));
+        let commands = kinds.iter().map(|kind| format!("`slcbeam {}`", kind.command()));
+        let wanted = format!("a result of {} is needed", joined(commands, " or "));
         let what = match Self::within(dir) {
             Some(kind) if kinds.contains(&kind) => return Ok(kind),
             Some(kind) => format!("it contains a result of `slcbeam {}`; {wanted}", kind.command()),

@@ -2,7 +2,7 @@
 
 use super::arrays::ArraysWriter;
 use super::envelope::Envelope;
-use super::plot::{self, Deflection, Energy, HistoryPlot, PlottedCurve, Pressure};
+use super::plot::{self, Deflection, PlottedCurve, Pressure};
 use crate::case::{Case, CaseText};
 use crate::discrete::quantities::{BeamField, FieldAxis, Observable};
 use crate::error::Result;
@@ -41,34 +41,24 @@ pub type NamedSvg = (&'static str, String);
 
 /// `history.svg` and `energy.svg`, if their columns exist, with error bands.
 pub fn over_time(case: &str, history: &Envelope, band: &ErrorBand) -> Vec<NamedSvg> {
-    let mut shown = HistoryPlot {
-        case: case.to_string(),
-        ..HistoryPlot::default()
+    let curve = |(k, (name, unit)): (usize, &(String, String))| PlottedCurve {
+        name: name.clone(),
+        unit: unit.clone(),
+        points: history.points(k),
+        widths: band.column_widths(name).unwrap_or_default(),
     };
-    let mut ledger = Energy {
-        case: case.to_string(),
-        ..Energy::default()
+    let curves = |belongs: fn(Observable) -> bool| -> Vec<PlottedCurve> {
+        let all = history.names().iter().enumerate();
+        let own = all.filter(|(_, (name, _))| Observable::named(name).is_some_and(belongs));
+        own.map(curve).collect()
     };
-    for (k, (name, unit)) in history.names().iter().enumerate() {
-        let Some(one) = Observable::named(name) else { continue };
-        let curve = || PlottedCurve {
-            name: name.clone(),
-            unit: unit.clone(),
-            points: history.points(k),
-            widths: band.column_widths(name).unwrap_or_default(),
-        };
-        if plot::history::belongs(one) {
-            shown.curves.push(curve());
-        }
-        if plot::energy::belongs(one) {
-            ledger.curves.push(curve());
-        }
-    }
-    let pictures = [
-        ("history.svg", plot::history::draw(&shown)),
-        ("energy.svg", plot::energy::draw(&ledger)),
-    ];
-    present(pictures)
+    present([
+        (
+            "history.svg",
+            plot::history::draw(case, &curves(plot::history::belongs)),
+        ),
+        ("energy.svg", plot::energy::draw(case, &curves(plot::energy::belongs))),
+    ])
 }
 
 /// `deflection.svg` and `pressure.svg` over the last cycle of the drive, or over the whole run without one.

@@ -4,7 +4,8 @@ use std::io;
 use std::path::Path;
 
 use super::arrays::TIMES;
-use super::folder::{CASE, FIELDS, HISTORY, damaged, fault, open, text_of};
+use super::envelope::table;
+use super::folder::{CASE, FIELDS, HISTORY, damaged, fault, text_of};
 use super::npz::Npz;
 use super::summary;
 use crate::error::Result;
@@ -24,7 +25,7 @@ pub fn read(dir: &Path) -> Result<Recording> {
     let summary = summary::read(dir)?;
     summary::verify_table(dir, HISTORY, &summary)?;
     let path = dir.join(HISTORY);
-    let mut columns = history(&path).map_err(|e| fault("read", &path, e))?;
+    let mut columns = history(&path)?;
     if columns.is_empty() {
         let why = damaged("it has no columns");
         return Err(fault("read", &path, why));
@@ -50,29 +51,18 @@ pub fn read(dir: &Path) -> Result<Recording> {
     Ok(out)
 }
 
-/// Reads columns `name [unit]`. Omits an incomplete last row of an interrupted run.
-fn history(path: &Path) -> io::Result<Vec<Series>> {
-    let mut reader = csv::ReaderBuilder::new().flexible(true).from_reader(open(path)?);
-    let mut columns: Vec<Series> = reader
-        .headers()?
-        .iter()
-        .map(|heading| {
-            let (name, unit) = heading.split_once(" [").unwrap_or((heading, ""));
-            Series {
-                name: name.into(),
-                unit: unit.trim_end_matches(']').into(),
-                values: vec![],
-            }
-        })
-        .collect();
-    for row in reader.records() {
-        let row = row?;
-        let values: Vec<f64> = row.iter().filter_map(|x| x.parse().ok()).collect();
-        if values.len() != columns.len() {
-            break;
-        }
-        for (column, value) in columns.iter_mut().zip(values) {
-            column.values.push(value);
+/// Reads the columns. Omits an incomplete last row of an interrupted run.
+fn history(path: &Path) -> Result<Vec<Series>> {
+    let (names, mut rows) = table(path)?;
+    let empty = |(name, unit)| Series {
+        name,
+        unit,
+        values: vec![],
+    };
+    let mut columns: Vec<Series> = names.into_iter().map(empty).collect();
+    while let Some(row) = rows.next()?.filter(|row| row.len() == columns.len()) {
+        for (column, value) in columns.iter_mut().zip(row) {
+            column.values.push(*value);
         }
     }
     Ok(columns)

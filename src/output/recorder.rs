@@ -8,7 +8,7 @@ use std::time::Instant;
 
 use super::arrays::ArraysWriter;
 use super::checkpoint::{self, SavedCheckpoint};
-use super::downsampled_history::{BackgroundWriter, GrowingFiles, SyncedPart};
+use super::downsampled_history::{BackgroundWriter, GrowingFiles};
 use super::envelope::{Envelope, HistoryInMemory, HistorySource};
 use super::error_band::{self, ComparedHistories};
 use super::folder::{
@@ -75,7 +75,7 @@ impl FolderRecorder {
         at: &SavedCheckpoint,
         header: &Header,
     ) -> Result<Self> {
-        let (history, raw) = (folder.path(HISTORY), folder.path(RAW_FIELDS));
+        let (at, history, raw) = (&at.files, folder.path(HISTORY), folder.path(RAW_FIELDS));
         Stream::verify(&history, at.history)?;
         ArraysWriter::verify(&raw, header, &at.fields)?;
         let besides = [(ENVELOPE, at.envelope), (SENSITIVITIES, at.sensitivities)];
@@ -386,14 +386,7 @@ impl Recorder for FolderRecorder {
         let Some(open) = self.open.as_mut() else {
             return Ok(());
         };
-        let SyncedPart { tables, arrays } = open.secure()?;
-        let saved = SavedCheckpoint {
-            history: tables.history,
-            envelope: tables.envelope,
-            sensitivities: tables.sensitivities,
-            fields: arrays,
-            run: checkpoint.clone(),
-        };
-        checkpoint::write(&self.folder, &saved)
+        let (files, run) = (open.secure()?, checkpoint.clone());
+        checkpoint::write(&self.folder, &SavedCheckpoint { files, run })
     }
 }

@@ -3,7 +3,7 @@
 use serde_json::{Value, json};
 
 use super::bands;
-use super::columns::{aligned, warnings};
+use super::columns::{aligned, if_any, joined, warnings};
 use super::folder::ResultFolder;
 use super::numbers::{count, counted, percent, significant};
 use crate::error::Result;
@@ -73,18 +73,14 @@ pub fn describe(found: &Uncertainty) -> String {
 
 /// Heading of the table: inputs and samples.
 fn about(found: &Uncertainty) -> String {
-    let inputs: Vec<String> = found
-        .inputs
-        .iter()
-        .map(|one| format!("{} = {}", one.pointer, one.distribution))
-        .collect();
-    let finished = match found.samples - found.finished {
-        0 => String::new(),
-        lost => format!(", {} of which did not finish", count(lost as u64)),
-    };
+    let inputs = found.inputs.iter();
+    let inputs = inputs.map(|one| format!("{} = {}", one.pointer, one.distribution));
+    let finished = if_any(found.samples - found.finished, |lost| {
+        format!(", {} of which did not finish", count(lost as u64))
+    });
     format!(
         "Uncertainty from {}, by {}{finished} (seed {}):",
-        inputs.join(", "),
+        joined(inputs, ", "),
         counted(found.samples as u64, "sample"),
         found.seed
     )
@@ -130,35 +126,28 @@ fn mostly(one: &FigureSpread, inputs: &[UncertainInput]) -> Option<String> {
 
 /// Section of a page.
 pub fn section(found: &Uncertainty) -> Value {
-    let rows: Vec<_> = found
-        .figures
-        .iter()
-        .map(|(name, one)| row(name, one, &found.inputs))
-        .collect();
+    let rows = found.figures.iter();
+    let rows: Vec<_> = rows.map(|(name, one)| row(name, one, &found.inputs)).collect();
     let mut tables = vec![json!({
         "title": null,
         "about": "Standard deviations and the numerical error are relative to the figure of the case itself. First order: from \
                   derivatives at the means. Samples: from simulations with random values of the uncertain numbers.",
         "headings": HEADINGS, "rows": rows, "file": UNCERTAINTY,
     })];
-    let indexed = found
-        .figures
-        .iter()
-        .filter_map(|(name, one)| Some((name, one.indices.as_ref()?)));
-    let indices: Vec<[Value; 6]> = indexed
-        .flat_map(|(name, indices)| {
-            found.inputs.iter().zip(indices).map(move |(input, index)| {
-                [
-                    json!(name),
-                    json!(input.pointer),
-                    json!(index.first),
-                    json!(index.first_error),
-                    json!(index.total),
-                    json!(index.total_error),
-                ]
-            })
-        })
-        .collect();
+    let mut indices = vec![];
+    for (name, one) in &found.figures {
+        for (input, i) in found.inputs.iter().zip(one.indices.iter().flatten()) {
+            let [alone, with_others] = [[i.first, i.first_error], [i.total, i.total_error]];
+            indices.push(json!([
+                name,
+                input.pointer,
+                alone[0],
+                alone[1],
+                with_others[0],
+                with_others[1]
+            ]));
+        }
+    }
     if !indices.is_empty() {
         tables.push(json!({
             "title": "Shares of the variance",
@@ -168,10 +157,8 @@ pub fn section(found: &Uncertainty) -> Value {
             "rows": indices, "file": null,
         }));
     }
-    let no_first_order = found
-        .no_first_order
-        .iter()
-        .map(|why| format!("There is no first order: {why}."));
+    let no_first_order = found.no_first_order.iter();
+    let no_first_order = no_first_order.map(|why| format!("There is no first order: {why}."));
     let notes: Vec<String> = no_first_order.chain(found.warnings.iter().cloned()).collect();
     json!({"about": about(found).trim_end_matches(':'), "tables": tables, "notes": notes})
 }

@@ -5,7 +5,7 @@ use std::fs;
 use std::path::Path;
 
 use slcbeam::case::CaseText;
-use slcbeam::output::envelope::{Envelope, HistorySource};
+use slcbeam::output::envelope::{Envelope, HistorySource, RowOrigin};
 use slcbeam::output::kind::FolderKind;
 use slcbeam::output::recorder::Finished;
 use slcbeam::output::{FolderRecorder, Labels, ResultFolder, folder, pictures, plot, report, summary};
@@ -535,40 +535,38 @@ fn pictures_are_well_formed_and_labelled() {
 #[test]
 fn pressure_curves_break_between_networks() {
     let x_f: Vec<f64> = header().axes[1].values.clone();
+    let bladder: Vec<i64> = header().axes[2].values.iter().map(|&b| b as i64).collect();
     let data = plot::Pressure {
         case: "two".into(),
         span: plot::TimeSpan::WholeRun,
         times: vec![0.0, 1.0],
-        bladder: header().axes[2].values.iter().map(|&b| b as i64).collect(),
-        network: Vec::new(),
+        network: bladder.iter().map(|b| b.signum()).collect(),
+        bladder,
         pressure: vec![x_f.clone(), vec![0.5; x_f.len()]],
         x_f,
     };
     let lines = |svg: &str, colour: &str| svg.matches(&format!("stroke=\"{colour}\"")).count();
-    let guessed = plot::pressure::draw(&data).expect("a picture");
+    let two = plot::pressure::draw(&data).expect("a picture");
     // Dark blue and dark red: a piece for each of the two networks.
-    assert_eq!((lines(&guessed, "#0B246B"), lines(&guessed, "#6E081B")), (2, 2));
-    let told = plot::Pressure {
+    assert_eq!((lines(&two, "#0B246B"), lines(&two, "#6E081B")), (2, 2));
+    let one = plot::Pressure {
         network: vec![7; data.x_f.len()],
         ..data
     };
-    assert_eq!(lines(&plot::pressure::draw(&told).expect("a picture"), "#0B246B"), 1);
+    assert_eq!(lines(&plot::pressure::draw(&one).expect("a picture"), "#0B246B"), 1);
 }
 
 /// Goal: the subtitle names error bands only where one is drawn; a line hides a narrow one.
 #[test]
 fn a_picture_names_its_error_bands() {
-    let history = |width: f64| plot::HistoryPlot {
-        case: "one".into(),
-        curves: vec![plot::PlottedCurve {
-            name: "tip_u1".into(),
-            unit: "m".into(),
-            points: vec![(0.0, 0.0), (1.0, 1.0)],
-            widths: vec![(0.0, 0.0), (1.0, width)],
-        }],
+    let curve = |width: f64| plot::PlottedCurve {
+        name: "tip_u1".into(),
+        unit: "m".into(),
+        points: vec![(0.0, 0.0), (1.0, 1.0)],
+        widths: vec![(0.0, 0.0), (1.0, width)],
     };
     let named = |width: f64| {
-        let svg = plot::history::draw(&history(width)).expect("a picture");
+        let svg = plot::history::draw("one", &[curve(width)]).expect("a picture");
         let [shade, subtitle] = ["fill-opacity", "bands: estimated error"].map(|part| svg.contains(part));
         assert_eq!(shade, subtitle, "{width}");
         subtitle
@@ -578,8 +576,8 @@ fn a_picture_names_its_error_bands() {
 
 #[test]
 fn absent_data_make_no_picture() {
-    assert_eq!(plot::history::draw(&plot::HistoryPlot::default()), None);
-    assert_eq!(plot::energy::draw(&plot::Energy::default()), None);
+    assert_eq!(plot::history::draw("none", &[]), None);
+    assert_eq!(plot::energy::draw("none", &[]), None);
     let dry = Header {
         columns: vec![HistoryColumn {
             name: "t".into(),
@@ -618,10 +616,10 @@ fn instants_cover_the_last_cycle_or_everything() {
 #[test]
 fn no_extreme_is_lost_and_memory_is_bounded() {
     let names = vec![("t".to_string(), "s".to_string()), ("y".to_string(), "m".to_string())];
-    let mut envelope = Envelope::new(names, 101);
+    let mut envelope = Envelope::new(101);
     for k in 0..12_345 {
         let y = if k == 7_777 { 5.0 } else { (f64::from(k) * 0.7).sin() };
-        envelope.push(&[f64::from(k), y]);
+        envelope.add(&names, RowOrigin::History, &[f64::from(k), y]);
     }
     let points = envelope.points(1);
     assert!(points.len() <= 202, "{}", points.len());
@@ -637,10 +635,10 @@ fn no_extreme_is_lost_and_memory_is_bounded() {
 #[test]
 fn a_short_history_is_kept_as_it_is() {
     let names = vec![("t".to_string(), "s".to_string()), ("y".to_string(), "m".to_string())];
-    let mut envelope = Envelope::new(names, 100);
-    envelope.push(&[0.0, 1.0]);
-    envelope.push(&[1.0, f64::NAN]);
-    envelope.push(&[2.0, 1.0]);
+    let mut envelope = Envelope::new(100);
+    envelope.add(&names, RowOrigin::History, &[0.0, 1.0]);
+    envelope.add(&names, RowOrigin::History, &[1.0, f64::NAN]);
+    envelope.add(&names, RowOrigin::History, &[2.0, 1.0]);
     let points = envelope.points(1);
     assert_eq!(points.len(), 3);
     assert!(points[1].1.is_nan());

@@ -166,7 +166,7 @@ fn spent(process: u32) -> (String, f64) {
 
 /// Commands that compute for minutes; what all of them have in common is left out.
 #[cfg(target_os = "linux")]
-const LONG: [&str; 26] = [
+const LONG: [&str; 27] = [
     "run cases/bend-wet.json --set /time/end_s=100 --out",
     "run cases/dry-cantilever.json --set /mesh/segments=80 --set /mesh/cells_per_segment=400 --out",
     "run cases/bend-wet.json --accuracy 1e-6 --set /time/end_s=100 --out",
@@ -178,6 +178,7 @@ const LONG: [&str; 26] = [
     "modes cases/bend-wet.json --uncertain /beam/young_modulus_pa=normal:2e6:1e5 --samples 4000 --out",
     "modes cases/valves-half.json --map frequency,amplitude --points 100,100 --out",
     "response cases/shake-wet.json --set /mesh/cells_per_segment=60 --points 100000 --input /ends/root/clamped/u1_m --output tip_u1 --out",
+    "bands cases/metamaterial.json --set /mesh/cells_per_segment=16 --points 100000 --out",
     "periodic cases/tour-harvester.json --set /mesh/cells_per_segment=200 --out",
     "periodic cases/tour-harvester.json --sweep /beam/young_modulus_pa=1e6:2e6:100 --out",
     "floquet cases/tour-harvester.json --set /mesh/cells_per_segment=200 --out",

@@ -160,7 +160,7 @@ fn a_budget_too_small_for_anything_is_no_failure() {
     let found = studied(DRY, plan(&[1e-3], &[2], &[2], Budget::Steps(10)));
     assert!(found.measure().is_none() && found.front.is_empty());
     assert_eq!(files::sentence(&found), "No accuracy is known: no run finished.");
-    assert!(files::picture(&found).is_none());
+    assert!(files::draw(&found).is_none());
 }
 
 #[test]
@@ -242,7 +242,7 @@ fn one_step_methods_stand_beside_orders() {
         );
     }
     assert!(files::table(&found).contains("esdirk46") && files::csv(&found).contains(",esdirk34,3,"));
-    let picture = slcbeam::output::plot::workprecision::draw(&files::picture(&found).unwrap()).unwrap();
+    let picture = files::draw(&found).unwrap();
     assert!(picture.contains("2 cells, esdirk34") && picture.contains("2 cells, order 2"));
     assert_eq!(Scheme::list(&["rk4".into()], &[2]).map_err(|e| e.exit_code()), Err(2));
 }

@@ -1,19 +1,19 @@
 //! Output files of an ablation, `effects.csv`, `effects.json` and `effects.svg`, and its text.
 
+mod picture;
 mod table;
 
 use std::path::PathBuf;
 
 use super::folder::ResultFolder;
-use super::plot::ablation::{self, AblationBars, Bar};
-use crate::case::schema::Effect;
 use crate::discrete::quantities::Interest;
 use crate::error::Result;
 use crate::results;
+use crate::study::effects::Ablation;
 use crate::study::effects::ablation::{ComparedRun, LARGEST};
 use crate::study::effects::figure_change::ModelMeasure;
-use crate::study::effects::{Ablation, EffectVerdict};
 
+pub use picture::{Bar, bars};
 pub use table::{csv, sentence, table};
 
 /// One row per effect and quantity.
@@ -83,33 +83,6 @@ pub fn json(found: &Ablation) -> String {
 /// Writes the files into a folder; other files in it stay.
 pub fn write(folder: &mut ResultFolder, found: &Ablation, shown: &ShownQuantity) -> Result<Vec<PathBuf>> {
     let mut files = vec![(CSV, csv(found)), (JSON, json(found))];
-    files.extend(ablation::draw(&bars(found, shown)).map(|text| (PICTURE, text)));
+    files.extend(picture::draw(found, shown).map(|text| (PICTURE, text)));
     folder.fill(files)
-}
-
-/// Data of the picture.
-pub fn bars(found: &Ablation, shown: &ShownQuantity) -> AblationBars {
-    let bar = |name: &str, compared: &ComparedRun, verdict: Option<EffectVerdict>| Bar {
-        name: name.into(),
-        change: shown.change(compared),
-        largest: compared.largest.as_ref().map(|l| l.1),
-        work: compared.work,
-        verdict,
-    };
-    let mut bars: Vec<Bar> = vec![];
-    for row in &found.rows {
-        let name = match row.without.as_slice() {
-            [] => row.name.to_string(),
-            others => format!("{} (no {})", row.name, Effect::names(others, ", ")),
-        };
-        bars.extend(row.left_out.as_ref().map(|c| bar(&name, c, Some(row.verdict))));
-    }
-    bars.extend(table::beside(found).map(|(name, c)| bar(name, c, None)));
-    AblationBars {
-        case: found.case.clone(),
-        measure: shown.describe().into(),
-        tolerance: found.tolerance,
-        own: shown.own(found),
-        bars,
-    }
 }

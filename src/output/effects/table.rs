@@ -56,12 +56,8 @@ pub fn table(found: &Ablation, shown: &ShownQuantity) -> String {
             _ => {}
         }
     }
-    let absent: Vec<Effect> = found
-        .rows
-        .iter()
-        .filter(|r| r.verdict == EffectVerdict::Absent)
-        .map(|r| r.name)
-        .collect();
+    let absent = found.rows.iter().filter(|r| r.verdict == EffectVerdict::Absent);
+    let absent: Vec<Effect> = absent.map(|r| r.name).collect();
     if !absent.is_empty() {
         reasons.push(format!("not in the full model: {}", Effect::names(&absent, ", ")));
     }
@@ -84,11 +80,8 @@ pub(super) fn beside(found: &Ablation) -> impl Iterator<Item = (&'static str, &C
 
 fn legend(found: &Ablation, shown: &ShownQuantity) -> String {
     let own = |x: Option<f64>| x.map_or_else(|| "unknown".into(), |x| format!("{x:.1e}"));
-    let worst = found
-        .measures
-        .iter()
-        .filter_map(|m| Some((m.own?, m.name.as_str())))
-        .max_by(|a, b| a.0.total_cmp(&b.0));
+    let all = found.measures.iter().filter_map(|m| Some((m.own?, &m.name)));
+    let worst = all.max_by(|a, b| a.0.total_cmp(&b.0));
     let mut text = format!(
         "\nchange: relative to the quantity's largest figure; tolerance {:e}; ~ below the integrator's own error, which at rtol {:e}\n\
          is {} of {}",
@@ -144,14 +137,9 @@ fn line(
     number: String,
 ) -> [String; 10] {
     if c.trial.summary.is_none() {
+        let verdict = if verdict.is_empty() { "failed" } else { verdict };
         let mut line: [String; 10] = Default::default();
-        line[0] = name.into();
-        line[1] = if verdict.is_empty() {
-            "failed".into()
-        } else {
-            verdict.into()
-        };
-        line[9] = number;
+        (line[0], line[1], line[9]) = (name.into(), verdict.into(), number);
         return line;
     }
     let small = |x: f64, own: bool| format!("{}{x:.1e}", if own || x == 0.0 { "" } else { "~" });

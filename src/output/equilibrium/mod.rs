@@ -4,7 +4,7 @@ mod text;
 
 use std::path::PathBuf;
 
-use super::folder::{CASE, ResultFolder};
+use super::folder::ResultFolder;
 use super::numbers::shortest;
 use super::plot::canvas::{LineStyle, TextAnchor, TextStyle};
 use super::plot::colour::PALETTE;
@@ -119,15 +119,9 @@ pub fn json(found: &LoadPath) -> String {
 
 /// Writes the files into a folder; other files in it stay.
 pub fn write(folder: &mut ResultFolder, found: &LoadPath) -> Result<Vec<PathBuf>> {
-    let case = found.case.written();
-    let mut files = vec![
-        (CSV, table(found)),
-        (SHAPES, shapes(found)),
-        (JSON, json(found)),
-        (CASE, case.json.clone()),
-    ];
+    let mut files = vec![(CSV, table(found)), (SHAPES, shapes(found)), (JSON, json(found))];
     files.extend(drawn(found).map(|text| (PICTURE, text)));
-    folder.fill_with(&case, files)
+    folder.fill_with(&found.case.written(), files)
 }
 
 /// One row per state, with its stage (from 1) if there are several.

@@ -3,7 +3,7 @@
 use super::LoadPath;
 use crate::discrete::quantities::probes::is_stress;
 use crate::discrete::quantities::{Group, Observable};
-use crate::output::columns::{self, aligned, warnings};
+use crate::output::columns::{self, aligned, if_any, warnings};
 use crate::output::numbers::{counted, quantity, significant, with_error};
 use crate::run::equilibrium::EquilibriumState;
 use crate::run::record::HistoryColumn;
@@ -41,11 +41,7 @@ pub fn describe(found: &LoadPath) -> String {
         let stability = match &last.stability {
             None => "stability unknown".into(),
             Some(s) if s.unstable == 0 => "stable".into(),
-            Some(s) => format!(
-                "unstable in {} way{}",
-                s.unstable,
-                if s.unstable == 1 { "" } else { "s" }
-            ),
+            Some(s) => format!("unstable in {}", counted(s.unstable as u64, "way")),
         };
         text.push_str(&format!(
             "\n{}, {stability}: {}, {}, {} in all\n",
@@ -68,27 +64,21 @@ pub fn describe(found: &LoadPath) -> String {
             significant(s.parameter.value, 6)
         ));
         let derivatives = found.columns.iter().zip(&s.row).skip(1);
-        // omits bladders that do not change
-        let changes = |column: &HistoryColumn, lines: &[String; 4]| !is_bladder(column) || lines[2] != "0";
-        let mut lines: Vec<_> = derivatives
-            .map(|(column, derivative)| {
-                let by_share = 0.01 * s.parameter.value * derivative;
-                let counts = by_share.abs() > floor(found, column.unit);
-                let (derivative, by_share) = if counts { (derivative, by_share) } else { (&0.0, 0.0) };
-                let by_share = significant(by_share, 4);
-                let words = format!("{0} per unit, {by_share} {0} per 1 %", column.unit);
-                let line = [String::new(), column.name.clone(), significant(*derivative, 6), words];
-                (column, line)
-            })
-            .filter(|(column, line)| changes(column, line))
-            .map(|(_, line)| line)
-            .collect();
+        let line = |(column, derivative): (&HistoryColumn, &f64)| {
+            let by_share = 0.01 * s.parameter.value * derivative;
+            let counts = by_share.abs() > floor(found, column.unit);
+            let (derivative, by_share) = if counts { (*derivative, by_share) } else { (0.0, 0.0) };
+            let (derivative, by_share) = (significant(derivative, 6), significant(by_share, 4));
+            let words = format!("{0} per unit, {by_share} {0} per 1 %", column.unit);
+            // omits bladders that do not change
+            let changes = !is_bladder(column) || derivative != "0";
+            changes.then(|| [String::new(), column.name.clone(), derivative, words])
+        };
+        let mut lines: Vec<_> = derivatives.filter_map(line).collect();
         let more = lines.len().saturating_sub(DERIVATIVES);
         lines.truncate(DERIVATIVES);
-        text.push_str(&aligned(&lines, &[1, 3]));
-        if more > 0 {
-            text.push_str(&format!("  and {more} more in equilibrium.json\n"));
-        }
+        text += &aligned(&lines, &[1, 3]);
+        text += &if_any(more, |n| format!("  and {n} more in equilibrium.json\n"));
     }
     if let Some(accuracy) = found.accuracy {
         text.push('\n');
@@ -102,15 +92,18 @@ fn last_with_errors(found: &LoadPath) -> String {
     let row = found.path.states.last().map_or(&[][..], |state| &state.row);
     let error = |column: &HistoryColumn| found.meshes?.errors.get(&column.name).copied();
     let texts = found.columns.iter().zip(row).skip(1).filter_map(|(column, value)| {
-        let group = Observable::named(&column.name).map(Observable::group);
-        let counts = matches!(group, Some(Group::Tip | Group::Pressure)) && value.abs() > floor(found, column.unit);
-        let error = error(column).filter(|_| counts)?;
+        let shown = counts(column) && value.abs() > floor(found, column.unit);
+        let error = error(column).filter(|_| shown)?;
         Some(format!("{} {}", column.name, with_error(*value, error, column.unit)))
     });
-    match texts.collect::<Vec<_>>() {
-        texts if texts.is_empty() => String::new(),
-        texts => format!("last state: {}\n", texts.join(" · ")),
-    }
+    let texts: Vec<String> = texts.collect();
+    if_any(texts.len(), |_| format!("last state: {}\n", texts.join(" · ")))
+}
+
+/// True for quantities of the tip and pressures.
+fn counts(column: &HistoryColumn) -> bool {
+    let group = Observable::named(&column.name).map(Observable::group);
+    matches!(group, Some(Group::Tip | Group::Pressure))
 }
 
 /// Loads of the last state.
@@ -130,26 +123,21 @@ fn reached(found: &LoadPath, last: &EquilibriumState) -> String {
 
 /// Some of the states, the last among them.
 fn table(found: &LoadPath) -> String {
-    let columns: Vec<(usize, String)> = found
-        .columns
-        .iter()
-        .enumerate()
-        .filter(|(k, c)| {
-            let group = Observable::named(&c.name).map(Observable::group);
-            *k == 0 || matches!(group, Some(Group::Tip | Group::Pressure))
-        })
-        .map(|(k, c)| (k, format!("{} [{}]", c.name, c.unit)))
-        .collect();
+    let shown = |(k, column): &(usize, &HistoryColumn)| *k == 0 || counts(column);
+    let columns: Vec<_> = found.columns.iter().enumerate().filter(shown).collect();
     let states = &found.path.states;
     let every = states.len().div_ceil(ROWS).max(1);
     let mut shown: Vec<&EquilibriumState> = states.iter().rev().step_by(every).collect();
     shown.reverse();
-    let headings: String = columns.iter().map(|(_, name)| format!("{name} | ")).collect();
+    let headings: String = columns
+        .iter()
+        .map(|(_, c)| format!("{} [{}] | ", c.name, c.unit))
+        .collect();
     let lines = shown.iter().map(|state| {
         let unstable = state.stability.as_ref().map_or("–".into(), |s| s.unstable.to_string());
-        let numbers = columns.iter().map(|(k, _)| {
+        let numbers = columns.iter().map(|(k, column)| {
             let value = state.row[*k];
-            let counts = *k == 0 || value.abs() > floor(found, found.columns[*k].unit);
+            let counts = *k == 0 || value.abs() > floor(found, column.unit);
             significant(if counts { value } else { 0.0 }, 6)
         });
         numbers.chain([unstable]).collect::<Vec<_>>()

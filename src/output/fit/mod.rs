@@ -2,7 +2,7 @@
 
 mod text;
 
-use super::folder::{CASE, ResultFolder};
+use super::folder::ResultFolder;
 use super::numbers::{shortest, significant};
 use super::plot::canvas::LineStyle;
 use super::plot::colour::PALETTE;
@@ -32,15 +32,9 @@ pub const FITTED: &str = "fitted-case.json";
 /// # Errors
 /// A file cannot be written.
 pub fn write(folder: &mut ResultFolder, problem: &FitProblem, found: &Fitted) -> Result<()> {
-    let (own, fitted) = (problem.case.written(), found.case.written());
-    let mut files = vec![
-        (CSV, table(problem, found)),
-        (JSON, results::text(&found.fit)),
-        (CASE, own.json.clone()),
-        (FITTED, fitted.json.clone()),
-    ];
+    let mut files = vec![(CSV, table(problem, found)), (JSON, results::text(&found.fit))];
     files.extend(drawn(problem, found).map(|text| (PICTURE, text)));
-    folder.fill_with_both([&own, &fitted], files).map(|_| ())
+    folder.fill_with_both(&problem.case.written(), (FITTED, &found.case.written()), files)
 }
 
 /// Columns beside the observations: names with units, and values.

@@ -1,7 +1,7 @@
 //! Text of a fit, and of a run over data.
 
 use crate::error::{listed, visible};
-use crate::output::columns::{table, warnings};
+use crate::output::columns::{if_any, table, warnings};
 use crate::output::numbers::{counted, duration, percent, quantity, significant};
 use crate::study::fit::comparison::DataComparison;
 use crate::study::fit::outcome::{Bound, Fit, FittedNumber};
@@ -106,10 +106,9 @@ fn starts(fit: &Fit) -> String {
     let found: Vec<f64> = fit.starts.iter().filter_map(|start| start.chi_square).collect();
     let best = found.iter().copied().fold(f64::INFINITY, f64::min);
     let same = found.iter().filter(|cost| **cost <= best * 1.001 + 1e-9).count();
-    let failed = match fit.starts.len() - found.len() {
-        0 => String::new(),
-        n => format!(", {n} found no simulation that finishes"),
-    };
+    let failed = if_any(fit.starts.len() - found.len(), |n| {
+        format!(", {n} found no simulation that finishes")
+    });
     format!(
         "{same} of {} reached the least sum of squares{failed}\n",
         counted(fit.starts.len() as u64, "search")

@@ -17,6 +17,7 @@ use crate::results;
 use crate::results::cycles::{CycleResult, Floquet, Map};
 use crate::study::refine::meshes::Meshes;
 use crate::study::stability::Sheet;
+use crate::study::stability::tongue::MapPoint;
 
 /// Text of `floquet.csv`: one row per multiplier.
 pub fn csv(floquet: &Floquet) -> String {
@@ -97,28 +98,27 @@ pub fn write(folder: &mut ResultFolder, found: &CycleResult) -> Result<Vec<PathB
     folder.fill(files)
 }
 
+/// Points of a sheet with their frequencies [Hz] and amplitudes [m].
+pub fn points<'a>(map: &'a Map, sheet: &'a Sheet) -> impl Iterator<Item = (f64, f64, &'a MapPoint)> {
+    let columns = map.frequencies_hz.iter().zip(&sheet.points);
+    columns.flat_map(|(f, column)| {
+        let lines = map.amplitudes_m.iter().zip(column);
+        lines.map(|(a, point)| (*f, *a, point))
+    })
+}
+
 /// Text of `map.csv`: one row per point.
 pub fn map_csv(map: &Map) -> String {
     let headings = "permeability factor [1],frequency [Hz],amplitude [m],growth rate [1/s],real part [1],imaginary part [1],verdict";
-    let mut rows = vec![];
-    for sheet in &map.sheets {
-        for (f, column) in map.frequencies_hz.iter().zip(&sheet.points) {
-            for (a, point) in map.amplitudes_m.iter().zip(column) {
-                let (re, im) = point.multiplier.unzip();
-                let numbers = [
-                    sheet.permeability_factor,
-                    Some(*f),
-                    Some(*a),
-                    point.growth_per_s,
-                    re,
-                    im,
-                ];
-                let mut row = numbers.map(|x| x.map_or(String::new(), shortest)).to_vec();
-                row.push(point.words.clone());
-                rows.push(row);
-            }
-        }
-    }
+    let rows = map.sheets.iter().flat_map(|sheet| {
+        points(map, sheet).map(|(f, a, point)| {
+            let (re, im) = point.multiplier.unzip();
+            let (factor, growth) = (sheet.permeability_factor, point.growth_per_s);
+            let numbers = [factor, Some(f), Some(a), growth, re, im];
+            let numbers = numbers.map(|x| x.map_or(String::new(), shortest));
+            numbers.into_iter().chain([point.words.clone()]).collect()
+        })
+    });
     records::text(headings.split(','), rows)
 }
 
@@ -129,37 +129,29 @@ pub fn map_words(map: &Map) -> String {
         let name = sheet
             .permeability_factor
             .map_or("dry".into(), |f| format!("permeability factor {}", shortest(f)));
-        let mut least: Option<(f64, f64)> = None;
-        let (mut growing, mut missing, mut count) = (0, 0, 0);
-        let mut largest = (0.0, 0.0, 0.0);
-        for (f, column) in map.frequencies_hz.iter().zip(&sheet.points) {
-            for (a, point) in map.amplitudes_m.iter().zip(column) {
-                count += 1;
-                missing += usize::from(point.growth_per_s.is_none());
-                if !point.grows() {
-                    continue;
-                }
-                growing += 1;
-                if least.is_none_or(|(_, before)| *a < before) {
-                    least = Some((*f, *a));
-                }
-                let rate = point.growth_per_s.unwrap_or(0.0);
-                if rate > largest.2 {
-                    largest = (*f, *a, rate);
-                }
-            }
-        }
-        let _ = match least {
+        let count = points(map, sheet).count();
+        let missing = points(map, sheet)
+            .filter(|(.., point)| point.growth_per_s.is_none())
+            .count();
+        let growing = points(map, sheet).filter(|(.., point)| point.grows());
+        let growing: Vec<_> = growing
+            .map(|(f, a, point)| (f, a, point.growth_per_s.unwrap_or(0.0)))
+            .collect();
+        let least = growing.iter().min_by(|x, y| x.1.total_cmp(&y.1));
+        // the first of several that grow equally fast
+        let fastest = growing.iter().rev().max_by(|x, y| x.2.total_cmp(&y.2));
+        let _ = match least.zip(fastest) {
             None => writeln!(text, "{name}: no point of {count} grows, {missing} without a cycle"),
-            Some((f, a)) => writeln!(
+            Some(((f, a, _), (at, with, rate))) => writeln!(
                 text,
-                "{name}: {growing} of {count} points grow, {missing} without a cycle; the least amplitude is {} m at {} Hz, the \
+                "{name}: {} of {count} points grow, {missing} without a cycle; the least amplitude is {} m at {} Hz, the \
                  fastest growth {} /s at {} Hz and {} m",
-                significant(a, 3),
-                significant(f, 4),
-                significant(largest.2, 3),
-                significant(largest.0, 4),
-                significant(largest.1, 3)
+                growing.len(),
+                significant(*a, 3),
+                significant(*f, 4),
+                significant(*rate, 3),
+                significant(*at, 4),
+                significant(*with, 3)
             ),
         };
     }
@@ -229,8 +221,8 @@ fn tongues(map: &Map) -> Option<String> {
         Some((first, last, 0.5 * (last - first) / (all.len() - 1).max(1) as f64))
     };
     let (across, up) = (range(&map.frequencies_hz)?, range(&map.amplitudes_m)?);
-    let points = map.sheets.iter().flat_map(|sheet| sheet.points.iter().flatten());
-    let grown = points.filter_map(|point| point.growth_per_s).filter(|g| g.is_finite());
+    let all = map.sheets.iter().flat_map(|sheet| sheet.points.iter().flatten());
+    let grown = all.filter_map(|point| point.growth_per_s).filter(|g| g.is_finite());
     let most = grown.fold(0.0, f64::max);
     let colour = |growth: Option<f64>| match growth {
         None => MISSING,
@@ -243,13 +235,11 @@ fn tongues(map: &Map) -> Option<String> {
     let (x, y) = (axis("frequency", "Hz", across), axis("amplitude", "m", up));
     let (half_x, half_y) = (across.2, up.2);
     let panel = |(k, sheet): (usize, &Sheet)| {
-        let mut series = vec![];
-        for (f, column) in map.frequencies_hz.iter().zip(&sheet.points) {
-            for (a, point) in map.amplitudes_m.iter().zip(column) {
-                let corners = [(f - half_x, a - half_y), (f + half_x, a + half_y)];
-                series.push(PictureSeries::cell(corners, colour(point.growth_per_s)));
-            }
-        }
+        let cell = |(f, a, point): (f64, f64, &MapPoint)| {
+            let corners = [(f - half_x, a - half_y), (f + half_x, a + half_y)];
+            PictureSeries::cell(corners, colour(point.growth_per_s))
+        };
+        let mut series: Vec<_> = points(map, sheet).map(cell).collect();
         let within = |a: f64| if a <= up.1 + half_y { a } else { f64::NAN };
         let onset = map
             .mathieu

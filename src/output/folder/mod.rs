@@ -221,23 +221,26 @@ impl ResultFolder {
     }
 
     /// Writes all files of a result without a run, with its case, as [`ResultFolder::fill`].
-    pub fn fill_with<T: AsRef<[u8]>>(&mut self, case: &CaseText, files: Vec<(&str, T)>) -> Result<Vec<PathBuf>> {
+    pub fn fill_with(&mut self, case: &CaseText, mut files: Vec<(&str, String)>) -> Result<Vec<PathBuf>> {
+        files.push((CASE, case.json.clone()));
         self.write_tables(case)?;
         let written = self.fill(files)?;
         self.remove_other_tables(case)?;
         Ok(written)
     }
 
-    /// Writes a result with a second case, whose tables are stored beside those of its own, as [`ResultFolder::fill_with`].
-    pub fn fill_with_both<T: AsRef<[u8]>>(
+    /// Writes a result with a second case of this name, whose tables are stored beside those of its own, as [`ResultFolder::fill_with`].
+    pub fn fill_with_both(
         &mut self,
-        [own, other]: [&CaseText; 2],
-        files: Vec<(&str, T)>,
-    ) -> Result<Vec<PathBuf>> {
+        own: &CaseText,
+        (name, other): (&'static str, &CaseText),
+        mut files: Vec<(&str, String)>,
+    ) -> Result<()> {
+        files.push((name, other.json.clone()));
         let mut both = own.clone();
         let new = |table: &&(String, String)| own.tables.iter().all(|(name, _)| *name != table.0);
         both.tables.extend(other.tables.iter().filter(new).cloned());
-        self.fill_with(&both, files)
+        self.fill_with(&both, files).map(|_| ())
     }
 
     /// Removes a file, if it exists.

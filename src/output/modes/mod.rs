@@ -117,14 +117,11 @@ impl Report<'_> {
             )
         });
         let short = self.accuracy.and_then(refine::warning);
-        let known = self.known.iter().cloned();
-        let own = self.found.warnings(&self.about());
-        known
-            .chain(still)
-            .chain(own)
-            .chain(self.uncertain())
-            .chain(short)
-            .collect()
+        let mut all = self.known.to_vec();
+        all.extend(still);
+        all.extend(self.found.warnings(&self.about()));
+        all.extend(self.uncertain().into_iter().chain(short));
+        all
     }
 
     /// Change of each mode for a 1 % change of a number of the case: `mode 2: +0.0608 Hz, −1.2e-5 1/s`.
@@ -156,19 +153,14 @@ impl Report<'_> {
     /// Sentences below the table.
     pub fn sentences(&self) -> String {
         let coupling = self.passivity().map(|p| p.1);
-        let warnings = self.warnings().into_iter().map(|w| format!("warning: {w}"));
-        let derivatives = self.sensitivities.iter().map(|s| self.derivatives(s));
-        let all: Vec<String> = [self.verdict()]
-            .into_iter()
-            .chain(self.only())
-            .chain(coupling)
-            .chain(warnings)
-            .chain(derivatives)
-            .chain(
-                self.accuracy
-                    .map(|found| accuracy::describe(found).trim_end().to_string()),
-            )
-            .collect();
+        let mut all = vec![self.verdict()];
+        all.extend(self.only().into_iter().chain(coupling));
+        all.extend(self.warnings().into_iter().map(|w| format!("warning: {w}")));
+        all.extend(self.sensitivities.iter().map(|s| self.derivatives(s)));
+        all.extend(
+            self.accuracy
+                .map(|found| accuracy::describe(found).trim_end().to_string()),
+        );
         all.join("\n")
     }
 }
@@ -305,18 +297,10 @@ fn pack(found: &Modes) -> io::Result<Vec<u8>> {
         if places == 0 {
             continue;
         }
-        let values = |part: fn(&Complex<f64>) -> f64| {
-            let all = found.modes.iter().flat_map(field);
-            all.map(part)
-        };
-        let shape = [count, places];
-        write_array(
-            &mut npz,
-            &format!("{name}_amplitude_{unit}"),
-            &shape,
-            values(|x| x.norm()),
-        )?;
-        write_array(&mut npz, &format!("{name}_phase_rad"), &shape, values(|x| x.arg()))?;
+        let all = || found.modes.iter().flat_map(field);
+        let (shape, amplitude) = ([count, places], format!("{name}_amplitude_{unit}"));
+        write_array(&mut npz, &amplitude, &shape, all().map(|x| x.norm()))?;
+        write_array(&mut npz, &format!("{name}_phase_rad"), &shape, all().map(|x| x.arg()))?;
     }
     Ok(npz.finish()?.into_inner())
 }

@@ -4,7 +4,7 @@ use std::fmt::Write as _;
 
 use super::{Report, moves};
 use crate::case::schema::Effect;
-use crate::output::columns::{aligned, cells};
+use crate::output::columns::{aligned, cells, if_any};
 use crate::output::numbers::{counted, percent, quantity, significant};
 use crate::output::records::{self, number};
 use crate::run::modes::{LimitingMode, Mode, TimeBehavior};
@@ -90,31 +90,20 @@ pub fn table(report: &Report) -> String {
 
 /// Counts of the modes that do not move.
 fn staying(report: &Report) -> String {
-    let count = |kind| report.found.modes.iter().filter(|mode| mode.kind == kind).count();
-    let described = |count: usize, one: &str, what: &str| match count {
-        0 => None,
-        1 => Some(format!("1 {one} ({what})")),
-        n => Some(format!("{n} {one}s ({what})")),
+    let described = |(kind, what): (TimeBehavior, &str)| {
+        let one = kind.word();
+        match report.found.modes.iter().filter(|mode| mode.kind == kind).count() {
+            0 => None,
+            1 => Some(format!("1 {one} ({what})")),
+            n => Some(format!("{n} {one}s ({what})")),
+        }
     };
-    let all: Vec<String> = [
-        described(
-            count(TimeBehavior::Rigid),
-            TimeBehavior::Rigid.word(),
-            "nothing holds them",
-        ),
-        described(
-            count(TimeBehavior::Volume),
-            TimeBehavior::Volume.word(),
-            "fluid of closed networks",
-        ),
-    ]
-    .into_iter()
-    .flatten()
-    .collect();
-    match all.is_empty() {
-        true => String::new(),
-        false => format!("and with s = 0: {}\n", all.join(", ")),
-    }
+    let kinds = [
+        (TimeBehavior::Rigid, "nothing holds them"),
+        (TimeBehavior::Volume, "fluid of closed networks"),
+    ];
+    let all = kinds.into_iter().filter_map(described).collect::<Vec<_>>();
+    if_any(all.len(), |_| format!("and with s = 0: {}\n", all.join(", ")))
 }
 
 fn line(number: usize, mode: &Mode) -> [String; 13] {
@@ -169,32 +158,39 @@ pub fn describe(mode: &Mode) -> String {
     }
 }
 
+/// Heading and number of a column.
+type ModeColumn = (&'static str, fn(&Mode) -> Option<f64>);
+
+/// Columns of numbers in `modes.csv`.
+#[rustfmt::skip]
+const COLUMNS: [ModeColumn; 14] = [
+    ("frequency [Hz]", |mode| mode.frequency_hz()),
+    ("damping ratio [1]", |mode| mode.damping_ratio()),
+    ("growth rate [1/s]", |mode| Some(mode.s.re)),
+    ("time constant [s]", |mode| mode.time_s()),
+    ("error bound [1/s]", |mode| Some(mode.error)),
+    ("residual [1]", |mode| Some(mode.residual)),
+    ("transverse share [1]", |mode| Some(mode.shape.transverse())),
+    ("undrained frequency [Hz]", |mode| mode.undrained.map(|l| l.frequency_hz)),
+    ("undrained likeness [1]", |mode| mode.undrained.map(|l| l.likeness)),
+    ("drained frequency [Hz]", |mode| mode.drained.map(|l| l.frequency_hz)),
+    ("drained likeness [1]", |mode| mode.drained.map(|l| l.likeness)),
+    ("frequency on half the cells [Hz]", |mode| mode.coarse.map(|l| l.frequency_hz)),
+    ("extrapolated frequency [Hz]", |mode| mode.extrapolated_hz()),
+    ("extrapolated growth rate [1/s]", |mode| mode.extrapolated().map(|s| s.re)),
+];
+
 /// Text of `modes.csv`: one row per mode; cells without a number are empty.
 pub fn csv(report: &Report) -> String {
-    let headings = "mode [1],kind,frequency [Hz],damping ratio [1],growth rate [1/s],time constant [s],error bound [1/s],residual [1],\
-                    transverse share [1],undrained frequency [Hz],undrained likeness [1],drained frequency [Hz],drained likeness [1],\
-                    frequency on half the cells [Hz],extrapolated frequency [Hz],extrapolated growth rate [1/s]";
+    let headings = ["mode [1]", "kind"]
+        .into_iter()
+        .chain(COLUMNS.map(|(heading, _)| heading));
     let rows = report.found.modes.iter().enumerate().map(|(k, mode)| {
-        let [undrained, drained] = [&mode.undrained, &mode.drained].map(Option::as_ref);
-        let numbers = [
-            mode.frequency_hz(),
-            mode.damping_ratio(),
-            Some(mode.s.re),
-            mode.time_s(),
-            Some(mode.error),
-            Some(mode.residual),
-            Some(mode.shape.transverse()),
-            undrained.map(|l| l.frequency_hz),
-            undrained.map(|l| l.likeness),
-            drained.map(|l| l.frequency_hz),
-            drained.map(|l| l.likeness),
-            mode.coarse.map(|l| l.frequency_hz),
-            mode.extrapolated_hz(),
-            mode.extrapolated().map(|s| s.re),
-        ];
-        let mut row = vec![(k + 1).to_string(), mode.kind.word().into()];
-        row.extend(numbers.map(number));
-        row
+        let first = [(k + 1).to_string(), mode.kind.word().into()];
+        first
+            .into_iter()
+            .chain(COLUMNS.map(|(_, of)| number(of(mode))))
+            .collect()
     });
-    records::text(headings.split(','), rows)
+    records::text(headings, rows)
 }

@@ -2,7 +2,7 @@
 
 mod text;
 
-use super::folder::{CASE, ResultFolder};
+use super::folder::ResultFolder;
 use super::numbers::{shortest, significant};
 use super::plot::canvas::{FAINT_INK, LineStyle};
 use super::plot::colour::PALETTE;
@@ -33,15 +33,9 @@ pub const BEST: &str = "optimum-case.json";
 /// # Errors
 /// A file cannot be written.
 pub fn write(folder: &mut ResultFolder, problem: &OptimizationProblem, found: &OptimizedCase) -> Result<()> {
-    let (own, best) = (problem.case.written(), found.case.written());
-    let mut files = vec![
-        (CSV, table(problem, found)),
-        (JSON, results::text(&found.optimum)),
-        (CASE, own.json.clone()),
-        (BEST, best.json.clone()),
-    ];
+    let mut files = vec![(CSV, table(problem, found)), (JSON, results::text(&found.optimum))];
     files.extend(drawn(problem, found).map(|text| (PICTURE, text)));
-    folder.fill_with_both([&own, &best], files).map(|_| ())
+    folder.fill_with_both(&problem.case.written(), (BEST, &found.case.written()), files)
 }
 
 fn table(problem: &OptimizationProblem, found: &OptimizedCase) -> String {
@@ -82,17 +76,17 @@ const DRAWN: usize = 6;
 fn drawn(problem: &OptimizationProblem, found: &OptimizedCase) -> Option<String> {
     let optimum = &found.optimum;
     let name = readable::figure_name(&optimum.goal.figure);
-    let figures = || found.history.iter().filter_map(|one| Some(one.figures.as_ref()?[0]));
-    extent(figures())?;
-    let y = PictureAxis::new(name, unit(&optimum.goal.figure), 5).with(&figures().collect::<Vec<_>>());
+    let all = found.history.iter().enumerate();
+    let computed: Vec<_> = all
+        .filter_map(|(k, one)| Some((k, one, one.figures.as_ref()?[0])))
+        .collect();
+    let figures: Vec<f64> = computed.iter().map(|(.., figure)| *figure).collect();
+    extent(figures.iter().copied())?;
+    let y = PictureAxis::new(name, unit(&optimum.goal.figure), 5).with(&figures);
     let panel = |x: PictureAxis, at: &dyn Fn(usize, &ComputedDesign) -> f64, best: Option<f64>| {
         let held = |wanted: bool| {
-            let all = found
-                .history
-                .iter()
-                .enumerate()
-                .filter(move |(_, one)| one.held == wanted);
-            all.filter_map(|(k, one)| Some((at(k, one), one.figures.as_ref()?[0])))
+            let all = computed.iter().filter(move |(_, one, _)| one.held == wanted);
+            all.map(|(k, one, figure)| (at(*k, one), *figure))
         };
         let rings = [(true, PALETTE[0], "a design"), (false, FAINT_INK, "beyond a limit")];
         let mut series: Vec<_> = rings
@@ -106,12 +100,9 @@ fn drawn(problem: &OptimizationProblem, found: &OptimizedCase) -> Option<String>
         Panel::new((620.0, 190.0), x, y.clone(), series)
     };
     let mut designs = panel(PictureAxis::new("design", "1", 8), &|k, _| k as f64, None);
-    let in_order = found.history.iter().enumerate();
-    let in_order = in_order.filter_map(|(k, one)| Some((k as f64, one.figures.as_ref()?[0])));
-    designs.series.insert(
-        0,
-        PictureSeries::line(in_order, LineStyle::dashed(PALETTE[9], 0.8, (3.0, 3.0))),
-    );
+    let in_order = computed.iter().map(|(k, _, figure)| (*k as f64, *figure));
+    let dashed = LineStyle::dashed(PALETTE[9], 0.8, (3.0, 3.0));
+    designs.series.insert(0, PictureSeries::line(in_order, dashed));
     let numbers = problem.spans.iter().enumerate().take(DRAWN).map(|(i, span)| {
         let (name, unit) = (
             readable::pointer_name(&span.pointer),

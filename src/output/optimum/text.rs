@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use crate::error::visible;
-use crate::output::columns::{table, warnings};
+use crate::output::columns::{if_any, table, warnings};
 use crate::output::numbers::{counted, duration, percent, significant};
 use crate::output::sweep::text::several;
 use crate::results::optimum::{Bound, ComparedAlternative, DerivativeSource, LimitAtOptimum, Optimum, Variable};
@@ -46,10 +46,7 @@ pub fn describe(found: &Optimum) -> String {
     text += &format!(
         "\n{}{}{}, {}\n",
         several(found.evaluations),
-        match failed {
-            0 => String::new(),
-            n => format!(", {n} of which failed,"),
-        },
+        if_any(failed, |n| format!(", {n} of which failed,")),
         how(found),
         duration(found.wall_s)
     );
@@ -106,10 +103,9 @@ fn alternatives(found: &Optimum) -> String {
     let ranked = ranked(found);
     let shown = ranked.iter().take(SHOWN).map(|one| line(one));
     let headings = format!(" | < | {} | <", found.goal.figure);
-    let more = match ranked.len().saturating_sub(SHOWN) {
-        0 => String::new(),
-        n => format!("  and {n} more in optimum.json\n"),
-    };
+    let more = if_any(ranked.len().saturating_sub(SHOWN), |n| {
+        format!("  and {n} more in optimum.json\n")
+    });
     format!("\n{}{more}", table(&headings, shown))
 }
 
@@ -192,15 +188,9 @@ fn starts(found: &Optimum) -> String {
         "{same} of {} reached this optimum",
         counted(found.starts.len() as u64, "search")
     );
-    if !others.is_empty() {
-        text += &format!("; others ended at {}", others.join(", "));
-    }
-    if beyond > 0 {
-        text += &format!("; {beyond} ended outside the limits");
-    }
-    if nothing > 0 {
-        text += &format!("; {nothing} found no design that can be computed");
-    }
+    text += &if_any(others.len(), |_| format!("; others ended at {}", others.join(", ")));
+    text += &if_any(beyond, |n| format!("; {n} ended outside the limits"));
+    text += &if_any(nothing, |n| format!("; {n} found no design that can be computed"));
     text + "\n"
 }
 

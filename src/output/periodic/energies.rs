@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 
+use crate::output::columns::bracketed;
 use crate::output::numbers::{percent, quantity, significant};
 use crate::results::cycles::CyclePath;
 use crate::results::run::Quantity;
@@ -73,12 +74,7 @@ pub fn lines(
         let of = power::energy_of(&f.name).unwrap_or(f.name.clone());
         let open = f.open.map(|e| format!("residual of the energy balance {}", percent(e)));
         let error = error(&of).map(|e| format!("estimated error {}", percent(e)));
-        let known: Vec<String> = open.into_iter().chain(error).collect();
-        let known = match known.is_empty() {
-            true => String::new(),
-            false => format!(" ({})", known.join("; ")),
-        };
-        [f.words.into(), value + &known]
+        [f.words.into(), value + &bracketed(open.into_iter().chain(error), "; ")]
     };
     listed.map(line).collect()
 }

@@ -53,12 +53,12 @@ pub fn csv(found: &CyclePath) -> String {
         let figures = energies(m);
         row.extend(names.iter().map(|name| number(energies::column(&figures, name))));
         row.extend([first.map(|f| f.growth_per_s), first.map(|f| f.re), first.map(|f| f.im)].map(number));
-        row.extend([
-            m.search.work.steps.to_string(),
-            m.unknowns.to_string(),
-            shortest(m.wall_s),
-        ]);
-        row.push(m.floquet.verdict.words.clone());
+        let counts = [m.search.work.steps, m.unknowns as u64].map(|n| n.to_string());
+        row.extend(
+            counts
+                .into_iter()
+                .chain([shortest(m.wall_s), m.floquet.verdict.words.clone()]),
+        );
         row
     });
     let headings = motion
@@ -129,10 +129,8 @@ fn picture(found: &CyclePath) -> Option<String> {
         let points: Vec<_> = found.members.iter().map(point).collect::<Option<_>>()?;
         let unstable = |m: &CycleMember| m.floquet.verdict.stability == CycleStability::Unstable;
         let of = |which: bool| {
-            let all = points
-                .iter()
-                .zip(&found.members)
-                .filter(move |(_, m)| unstable(m) == which);
+            let all = points.iter().zip(&found.members);
+            let all = all.filter(move |(_, m)| unstable(m) == which);
             PictureSeries::marks(all.map(|(p, _)| *p), Glyph::Ring(3.4, 1.4), PALETTE[usize::from(which)])
         };
         let line = PictureSeries::line(points.iter().copied(), LineStyle::solid(PALETTE[0], 1.4));

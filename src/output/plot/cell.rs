@@ -17,16 +17,9 @@ const SIDES: LineStyle = LineStyle {
     dash: None,
 };
 
-/// A cell under one load.
-pub struct Deformed {
-    /// Magnification of the displacements.
-    pub factor: f64,
-    /// The picture.
-    pub svg: String,
-}
-
-/// Draws the cell under a unit load with this index; `None` if the load does not move the cell.
-pub fn draw(cell: &Picture, load: usize) -> Option<Deformed> {
+/// Draws the cell under a unit load with this index, and returns the magnification of the displacements with the picture; `None` if the
+/// load does not move the cell.
+pub fn draw(cell: &Picture, load: usize) -> Option<(f64, String)> {
     let displacements = cell.displacements_m.get(load)?;
     let [along, high] = [0, 1].map(|k| cell.nodes_m.iter().map(|p| p[k].abs()).fold(0.0, f64::max));
     let largest = displacements.iter().map(|u| u[0].hypot(u[1])).fold(0.0, f64::max);
@@ -57,8 +50,7 @@ pub fn draw(cell: &Picture, load: usize) -> Option<Deformed> {
         bare: true,
         ..Panel::new(size, x, y, series)
     };
-    let svg = picture::Picture::stacked(String::new(), "", [panel]).svg()?;
-    Some(Deformed { factor, svg })
+    Some((factor, picture::Picture::stacked(String::new(), "", [panel]).svg()?))
 }
 
 /// Light color of a material.

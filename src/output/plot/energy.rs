@@ -6,15 +6,6 @@ use super::picture::{Panel, Picture, PictureAxis, PictureSeries};
 use super::{PlottedCurve, error_bands, times_of};
 use crate::discrete::quantities::{Group, Observable};
 
-/// Entries of the ledger over time.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct Energy {
-    /// Name of the case.
-    pub case: String,
-    /// Entries [J]: stored energies, cumulative works, losses, and the residual.
-    pub curves: Vec<PlottedCurve>,
-}
-
 /// Smallest half range of the axis [J].
 const FLOOR: f64 = 1e-15;
 /// Fraction of the largest entry below which an entry is not drawn.
@@ -25,23 +16,24 @@ pub fn belongs(one: Observable) -> bool {
     one.unit() == "J"
 }
 
-fn is_stored(curve: &PlottedCurve) -> bool {
-    curve.observable().is_some_and(|one| one.group() == Group::Stored)
+fn is_in(curve: &PlottedCurve, group: Group) -> bool {
+    curve.observable().is_some_and(|one| one.group() == group)
 }
 
-fn is_residual(curve: &PlottedCurve) -> bool {
-    curve.observable().is_some_and(|one| one.group() == Group::Open)
-}
-
-/// Draws the picture; `None` if there is nothing to draw.
-pub fn draw(data: &Energy) -> Option<String> {
-    let lines = entries(data);
+/// Draws entries of the ledger [J], stored energies, cumulative works, losses and the residual; `None` if there is nothing to draw.
+pub fn draw(case: &str, curves: &[PlottedCurve]) -> Option<String> {
+    let (residuals, all): (Vec<_>, Vec<_>) = curves
+        .iter()
+        .filter(|curve| !curve.points.is_empty())
+        .partition(|curve| is_in(curve, Group::Open));
+    let largest = all.iter().map(|curve| curve.max_abs()).fold(0.0, f64::max);
+    let counts = |curve: &&PlottedCurve| largest == 0.0 || curve.max_abs() > NEGLIGIBLE * largest;
+    let lines: Vec<_> = all.into_iter().filter(counts).collect();
     let x = times_of(lines.iter().copied())?;
-    let largest = lines.iter().map(|c| c.max_abs()).fold(0.0, f64::max);
     let colour = |k: usize| PALETTE[k % PALETTE.len()];
     let entry = |(k, curve): (usize, &&PlottedCurve)| {
         let stroke = LineStyle {
-            dash: (!is_stored(curve)).then_some((6.0, 3.5)),
+            dash: (!is_in(curve, Group::Stored)).then_some((6.0, 3.5)),
             ..LineStyle::solid(colour(k), 1.5)
         };
         let label = curve.observable().map_or(curve.name.as_str(), |one| one.label());
@@ -55,8 +47,7 @@ pub fn draw(data: &Energy) -> Option<String> {
     let mut series = error_bands(lines.iter().enumerate().map(|(k, curve)| (*curve, colour(k))), FLOOR);
     series.extend(lines.iter().enumerate().map(entry));
     let energies = panel(300.0, y, series);
-    let residual = data.curves.iter().find(|c| is_residual(c) && !c.points.is_empty());
-    let residual = residual.map(|curve| {
+    let residual = residuals.first().map(|curve| {
         let over = if largest > 0.0 { largest } else { 1.0 };
         let points = curve.points.iter().map(|p| (p.0, p.1 / over));
         let line = PictureSeries::line(points, LineStyle::solid(PALETTE[9], 1.2));
@@ -68,21 +59,10 @@ pub fn draw(data: &Energy) -> Option<String> {
         )
     });
     Picture::stacked(
-        format!("{} · energy", data.case),
+        format!("{case} · energy"),
         "stored energies (solid), cumulative works and losses (dashed)",
         [energies].into_iter().chain(residual),
     )
     .with_bands_named()
     .svg()
-}
-
-/// Entries that are not negligible.
-fn entries(data: &Energy) -> Vec<&PlottedCurve> {
-    let all = data.curves.iter();
-    let mut lines: Vec<_> = all.filter(|c| !is_residual(c) && !c.points.is_empty()).collect();
-    let largest = lines.iter().map(|c| c.max_abs()).fold(0.0, f64::max);
-    if largest > 0.0 {
-        lines.retain(|c| c.max_abs() > NEGLIGIBLE * largest);
-    }
-    lines
 }

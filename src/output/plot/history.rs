@@ -6,15 +6,6 @@ use super::picture::{Panel, Picture, PictureAxis, PictureSeries};
 use super::{PlottedCurve, error_bands, times_of};
 use crate::discrete::quantities::{Group, Observable};
 
-/// Curves over time.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct HistoryPlot {
-    /// Name of the case.
-    pub case: String,
-    /// Curves, matched to quantities by name.
-    pub curves: Vec<PlottedCurve>,
-}
-
 /// Groups that are drawn: the first with one panel per quantity, pressures and powers with one panel per unit.
 const GROUPS: [Group; 3] = [Group::Tip, Group::Pressure, Group::Power];
 
@@ -42,9 +33,9 @@ fn name(curves: &[&PlottedCurve]) -> &'static str {
     }
 }
 
-/// Draws the picture; `None` if there is nothing to draw.
-pub fn draw(data: &HistoryPlot) -> Option<String> {
-    let shown = panels(data);
+/// Draws curves, matched to quantities by name; `None` if there is nothing to draw.
+pub fn draw(case: &str, curves: &[PlottedCurve]) -> Option<String> {
+    let shown = panels(curves);
     let x = times_of(shown.iter().flatten().copied())?;
     let panels = shown.iter().enumerate().map(|(k, curves)| {
         // the second curve of a panel uses the other half of the palette
@@ -59,19 +50,15 @@ pub fn draw(data: &HistoryPlot) -> Option<String> {
         series.extend(curves.iter().enumerate().map(line));
         Panel::new((640.0, 112.0), x.clone(), y, series)
     });
-    Picture::stacked(
-        format!("{} · history", data.case),
-        "quantities over the whole run",
-        panels,
-    )
-    .with_bands_named()
-    .svg()
+    Picture::stacked(format!("{case} · history"), "quantities over the whole run", panels)
+        .with_bands_named()
+        .svg()
 }
 
 /// Curves of each panel; omits powers that are zero throughout.
-fn panels(data: &HistoryPlot) -> Vec<Vec<&PlottedCurve>> {
+fn panels(curves: &[PlottedCurve]) -> Vec<Vec<&PlottedCurve>> {
     let mut panels: Vec<Vec<&PlottedCurve>> = vec![];
-    for (one, curve) in data.curves.iter().filter_map(|c| Some((c.observable()?, c))) {
+    for (one, curve) in curves.iter().filter_map(|c| Some((c.observable()?, c))) {
         let group = one.group();
         if curve.points.is_empty() || group == Group::Power && curve.max_abs() == 0.0 {
             continue;

@@ -9,8 +9,6 @@
 //! ticks       round numbers along an axis, with SI prefixes
 //! labels      labels without overlap
 //! deflection, pressure, history, energy   a run
-//! workprecision   cost of accuracy
-//! ablation    change of results without each effect
 //! designs     many designs along one number, or over two
 //! cell        a cell of the section under one load
 //! ```
@@ -25,14 +23,12 @@ mod layout;
 pub mod picture;
 mod ticks;
 
-pub mod ablation;
 pub mod cell;
 pub mod deflection;
 pub mod designs;
 pub mod energy;
 pub mod history;
 pub mod pressure;
-pub mod workprecision;
 
 use self::canvas::LineStyle;
 use self::picture::{ColourBar, PictureAxis, PictureSeries};
@@ -41,12 +37,8 @@ use crate::discrete::quantities::Observable;
 use crate::study::companion::band::width_at;
 use colour::Colour;
 
-pub use ablation::AblationBars;
 pub use deflection::Deflection;
-pub use energy::Energy;
-pub use history::HistoryPlot;
 pub use pressure::Pressure;
-pub use workprecision::WorkPrecision;
 
 /// A named line over time.
 #[derive(Clone, Debug, Default, PartialEq)]

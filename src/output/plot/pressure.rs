@@ -18,7 +18,7 @@ pub struct Pressure {
     pub x_f: Vec<f64>,
     /// Bladder of each cell as `R j`: 3 in the upper row, −3 in the lower.
     pub bladder: Vec<i64>,
-    /// Network of each cell; inferred from gaps in `x_f` if empty.
+    /// Network of each cell.
     pub network: Vec<i64>,
     /// Pressure [Pa], one array per instant.
     pub pressure: Vec<Vec<f64>>,
@@ -35,7 +35,8 @@ pub fn draw(data: &Pressure) -> Option<String> {
         return None;
     }
     let bladders = runs(n, |k| data.bladder.get(k).copied().unwrap_or(0));
-    let networks = networks(data, &bladders);
+    // ranges of connected cells
+    let networks = runs(n, |k| data.network.get(k).copied().unwrap_or(0));
     let margin = 0.5 * least_step(&data.x_f).unwrap_or(1.0);
     let (lo, hi) = extent(data.x_f.iter().copied())?;
     let name = "coordinate along the networks, bladders [R j]";
@@ -85,31 +86,6 @@ fn runs<K: PartialEq>(n: usize, key: impl Fn(usize) -> K) -> Vec<(usize, usize)>
 fn least_step(x: &[f64]) -> Option<f64> {
     let steps = x.windows(2).map(|w| w[1] - w[0]).filter(|d| *d > 0.0);
     steps.min_by(f64::total_cmp)
-}
-
-/// Ranges of connected cells. If networks are not given, one ends where two bladders follow without the usual gap of a tube, or where the
-/// coordinate decreases.
-fn networks(data: &Pressure, bladders: &[(usize, usize)]) -> Vec<(usize, usize)> {
-    let n = data.x_f.len();
-    if data.network.len() == n {
-        return runs(n, |k| data.network[k]);
-    }
-    let gap = |k: usize| data.x_f[k] - data.x_f[k - 1];
-    let inside = bladders.iter().flat_map(|b| b.0 + 1..b.1).map(gap).fold(0.0, f64::max);
-    let between = bladders.iter().skip(1).map(|b| gap(b.0)).fold(0.0, f64::max);
-    let least = if inside > 0.0 {
-        0.5 * (inside + between)
-    } else {
-        0.85 * between
-    };
-    let mut ranges = vec![(0, n)];
-    for b in bladders.iter().skip(1).filter(|b| gap(b.0) < least) {
-        if let Some(last) = ranges.last_mut() {
-            last.1 = b.0;
-        }
-        ranges.push((b.0, n));
-    }
-    ranges
 }
 
 /// Points of a curve, with a break between networks.

@@ -2,19 +2,17 @@
 
 use serde_json::json;
 
-use super::{FolderKind, Page, Place, StoredResult};
+use super::{FolderKind, Page, Place};
 use crate::error::Result;
-use crate::output::band_structure::{CSV, JSON, PICTURE};
+use crate::output::band_structure::{CSV, PICTURE};
 use crate::output::folder::CASE;
 use crate::output::numbers::{counted, significant};
 use crate::results::bands::BandsRecord;
 
 /// Data of the page.
 pub fn data(place: &Place) -> Result<Page> {
-    let StoredResult { result: found, head } = place.result::<BandsRecord>(JSON)?;
-    let mut page = place.page(FolderKind::Bands, &found.case, Some(&head));
+    let (found, mut page) = place.begun::<BandsRecord>(FolderKind::Bands, |found| (&found.case, &found.warnings))?;
     page.put("label", "Waves of the repeating cell");
-    page.warnings.clone_from(&found.warnings);
     let tone = if found.warnings.is_empty() { "good" } else { "fair" };
     page.put("status", json!({"word": "finished", "tone": tone, "reason": null}));
     let [from, to] = found.band_hz.map(|hz| significant(hz, 4));

@@ -11,7 +11,7 @@ pub fn numbers(values: impl IntoIterator<Item = f64>) -> Value {
     Value::String(STANDARD.encode(bytes))
 }
 
-/// Data URL of an image.
-pub fn image(kind: &str, bytes: &[u8]) -> String {
-    format!("data:{kind};base64,{}", STANDARD.encode(bytes))
+/// Data URL of a picture.
+pub fn svg(bytes: &[u8]) -> String {
+    format!("data:image/svg+xml;base64,{}", STANDARD.encode(bytes))
 }

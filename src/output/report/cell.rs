@@ -25,11 +25,8 @@ const MOST: usize = 4;
 pub fn of_case(case: &Case) -> Vec<Value> {
     let mut all: Vec<(String, &Section)> = case.section.iter().map(|own| (String::new(), own)).collect();
     for (k, span) in case.spans.iter().enumerate() {
-        if let Some(own) = span
-            .section
-            .as_ref()
-            .filter(|own| all.iter().all(|(_, known)| known != own))
-        {
+        let new = |own: &&Section| all.iter().all(|(_, known)| known != own);
+        if let Some(own) = span.section.as_ref().filter(new) {
             all.push((format!(", /spans/{k}"), own));
         }
     }
@@ -47,11 +44,11 @@ fn pictures(section: &Section, ending: &str) -> Vec<Value> {
         return vec![];
     };
     let one = |(load, (name, unit)): (usize, (&str, &str))| {
-        let drawn = cell::draw(&found, load)?;
+        let (factor, drawn) = cell::draw(&found, load)?;
         Some(json!({
             "title": format!("{name}{ending}"),
-            "picture": base64::image("image/svg+xml", drawn.svg.as_bytes()),
-            "about": format!("1 {unit}, displacements × {}", significant(drawn.factor, 1)),
+            "picture": base64::svg(drawn.as_bytes()),
+            "about": format!("1 {unit}, displacements × {}", significant(factor, 1)),
         }))
     };
     LOADS.into_iter().enumerate().filter_map(one).collect()

@@ -5,7 +5,7 @@ use std::path::Path;
 
 use serde_json::{Value, json};
 
-use super::{FolderKind, Page, WrittenPage, base64, page, warnings};
+use super::{FolderKind, Page, WrittenPage, base64, cells, page, warnings};
 use crate::discrete::quantities::{Observable, QuantityRole};
 use crate::error::{Error, Result};
 use crate::output::folder::{REPORT, fault, replace_alike};
@@ -53,29 +53,24 @@ pub fn over_data(dir: &Path, picture: &str, found: &Data) -> Result<WrittenPage>
     let name = format!("{} over {}", found.case, file_name(&found.data));
     let mut page = begun("A run over measured data", name);
     let row = |one: &ComparedColumn| {
-        let left = &one.left;
+        let (left, matched) = (&one.left, one.matched.describe());
         let (rms, largest) = (100.0 * left.rms_relative, 100.0 * left.max_relative);
-        let numbers = json!([
-            left.count,
+        let first = [json!(matched), json!(one.quantity), json!(one.unit), json!(left.count)];
+        let numbers = [
             left.rms,
             left.max,
             one.max_at_s,
             left.bias,
             rms,
             largest,
-            left.r_squared
-        ]);
-        let numbers = numbers.as_array().cloned().unwrap_or_default();
-        [
-            vec![json!(one.matched.describe()), json!(one.quantity), json!(one.unit)],
-            numbers,
-        ]
-        .concat()
+            left.r_squared,
+        ];
+        cells(first, numbers.map(Value::from))
     };
     page.fill(json!({
         "facts": [format!("Run: {}", found.run), format!("Data: {}", found.data)],
         "figures": [{
-            "title": "Data and run", "picture": base64::image("image/svg+xml", picture.as_bytes()),
+            "title": "Data and run", "picture": base64::svg(picture.as_bytes()),
             "about": "Rings are measured, the line is the run. Below, run less data.",
         }],
         "table": {
@@ -220,14 +215,11 @@ fn tables(found: &ManyComparison, names: &[String]) -> Vec<Value> {
             Some((value, change)) => [json!(value), json!(change.map(|x| 100.0 * x))],
             None => [Value::Null, Value::Null],
         });
-        let first = [json!(figure.name), json!(figure.reference)];
-        Value::from(first.into_iter().chain(cells).collect::<Vec<_>>())
+        self::cells([json!(figure.name), json!(figure.reference)], cells)
     });
     let figures = figures.collect::<Vec<_>>();
-    let norms = found.norms().into_iter().map(|(name, norms)| {
-        let cells = norms.into_iter().map(|x| json!(x));
-        Value::from(std::iter::once(json!(name)).chain(cells).collect::<Vec<_>>())
-    });
+    let norms = found.norms().into_iter();
+    let norms = norms.map(|(name, norms)| cells([json!(name)], norms.into_iter().map(|x| json!(x))));
     let norms = norms.collect::<Vec<_>>();
     let changes = found.comparisons.iter().zip(&names[1..]).flat_map(|(one, name)| {
         let both = [("physics", &one.physics), ("numerics", &one.numerics)];
@@ -239,12 +231,9 @@ fn tables(found: &ManyComparison, names: &[String]) -> Vec<Value> {
     let changes = changes.collect::<Vec<_>>();
     let costs = found.comparisons.first().map_or(&[][..], |one| &one.costs);
     let costs = costs.iter().enumerate().map(|(k, cost)| {
-        let others = found
-            .comparisons
-            .iter()
-            .map(|one| json!(one.costs.get(k).map(|cost| cost.b)));
-        let first = [json!(cost.name), json!(cost.a)];
-        Value::from(first.into_iter().chain(others).collect::<Vec<_>>())
+        let others = found.comparisons.iter();
+        let others = others.map(|one| json!(one.costs.get(k).map(|cost| cost.b)));
+        cells([json!(cost.name), json!(cost.a)], others)
     });
     let costs = costs.collect::<Vec<_>>();
     let alone = |name: &String| vec![name.clone()];

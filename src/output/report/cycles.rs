@@ -2,9 +2,11 @@
 
 use serde_json::{Value, json};
 
-use super::{FolderKind, MOST_ROWS, Page, Place, StoredResult, capital};
+use super::{FolderKind, MOST_ROWS, Page, Place, capital, cells};
 use crate::error::Result;
 use crate::output::bands;
+use crate::output::columns::if_any;
+use crate::output::floquet::points;
 use crate::output::folder::CASE;
 use crate::output::numbers::{counted, significant};
 use crate::output::periodic::{SHOWN, energies, largest};
@@ -13,6 +15,7 @@ use crate::run::floquet::Multiplier;
 use crate::run::floquet::shape::EnergyPart;
 use crate::study::refine::numbers;
 use crate::study::stability::CycleMember;
+use crate::study::stability::tongue::MapPoint;
 
 /// Name of the growth rate of a disturbance.
 const GROWTH: &str = "growth_per_s";
@@ -20,10 +23,7 @@ const GROWTH: &str = "growth_per_s";
 /// Table of the multipliers.
 fn multipliers(found: &CycleResult) -> Value {
     let banded = !found.bands.is_empty();
-    let names: Vec<String> = numbers::named(&found.floquet)
-        .into_iter()
-        .map(|(name, _)| name)
-        .collect();
+    let names: Vec<String> = numbers::named(&found.floquet).into_iter().unzip::<_, _, _, Vec<_>>().0;
     // for a cycle's run only the band of the largest rate is known
     let band = |k: usize| {
         let own = found.bands.get(&format!("{}.{GROWTH}", names[k]));
@@ -39,20 +39,12 @@ fn multipliers(found: &CycleResult) -> Value {
         let before = [m.re, m.im, m.modulus, m.growth_per_s].map(Value::from);
         let behind = [json!(m.frequency_hz), json!(part), json!(m.share)];
         let band = banded.then(|| json!(band(k)));
-        before.into_iter().chain(band).chain(behind).collect::<Vec<_>>()
+        cells(before, band.into_iter().chain(behind))
     };
-    let mut headings = vec![
-        "real part",
-        "imaginary part",
-        "modulus",
-        "growth [1/s]",
-        "frequency [Hz]",
-        "mostly",
-        "share of energy",
-    ];
-    if banded {
-        headings.insert(4, "95 % of samples: growth [1/s]");
-    }
+    let before = ["real part", "imaginary part", "modulus", "growth [1/s]"];
+    let band = banded.then_some("95 % of samples: growth [1/s]");
+    let behind = ["frequency [Hz]", "mostly", "share of energy"];
+    let headings: Vec<_> = before.into_iter().chain(band).chain(behind).collect();
     json!({
         "title": "Multipliers",
         "about": "A small disturbance of the cycle is multiplied by these numbers in every period. It dies away where the modulus is \
@@ -81,9 +73,7 @@ pub fn of_cycle(found: &CycleResult) -> Value {
 
 /// Page of `floquet`.
 pub fn floquet(place: &Place) -> Result<Page> {
-    let StoredResult { result: found, head } = place.result::<CycleResult>(FolderKind::Floquet.sign())?;
-    let mut page = place.page(FolderKind::Floquet, &found.case, Some(&head));
-    page.warnings.clone_from(&found.warnings);
+    let (found, mut page) = place.begun::<CycleResult>(FolderKind::Floquet, |found| (&found.case, &found.warnings))?;
     let (word, tone) = match found.floquet.verdict.stability {
         CycleStability::Unstable => ("unstable", "bad"),
         CycleStability::Neutral => ("neutral", "fair"),
@@ -102,29 +92,21 @@ pub fn floquet(place: &Place) -> Result<Page> {
 
 /// Page of `floquet --map`.
 pub fn map(place: &Place) -> Result<Page> {
-    let StoredResult { result: found, head } = place.result::<Map>(FolderKind::Map.sign())?;
-    let mut page = place.page(FolderKind::Map, &found.case, Some(&head));
-    page.warnings.clone_from(&found.warnings);
+    let (found, mut page) = place.begun::<Map>(FolderKind::Map, |found| (&found.case, &found.warnings))?;
     let (mut rows, mut answers, mut all) = (vec![], vec![], 0);
     for sheet in &found.sheets {
         let factor = sheet.permeability_factor;
-        let (mut points, mut growing) = (0, 0);
-        for (f, column) in found.frequencies_hz.iter().zip(&sheet.points) {
-            for (a, point) in found.amplitudes_m.iter().zip(column) {
-                points += 1;
-                growing += usize::from(point.grows());
-                if rows.len() < MOST_ROWS {
-                    rows.push(json!([factor, f, a, point.growth_per_s, point.words]));
-                }
-            }
-        }
-        all += points;
+        let count = points(&found, sheet).count();
+        let growing = points(&found, sheet).filter(|(.., point)| point.grows()).count();
+        let row = |(f, a, point): (f64, f64, &MapPoint)| json!([factor, f, a, point.growth_per_s, point.words]);
+        rows.extend(points(&found, sheet).take(MOST_ROWS - rows.len()).map(row));
+        all += count;
         let name = factor.map_or("The dry beam".into(), |f| {
             format!("With permeabilities × {}", significant(f, 2))
         });
         answers.push(format!(
             "{name} the motion grows at {growing} of {}.",
-            counted(points as u64, "point")
+            counted(count as u64, "point")
         ));
     }
     let (columns, lines) = (found.frequencies_hz.len(), found.amplitudes_m.len());
@@ -153,7 +135,7 @@ pub fn map(place: &Place) -> Result<Page> {
 
 /// Page of `periodic --sweep`.
 pub fn sweep(place: &Place) -> Result<Page> {
-    let StoredResult { result: found, head } = place.result::<CyclePath>(FolderKind::Sweep.sign())?;
+    let (found, mut page) = place.begun::<CyclePath>(FolderKind::Sweep, |found| (&found.case, &found.warnings))?;
     let CyclePath {
         pointer,
         members,
@@ -161,16 +143,11 @@ pub fn sweep(place: &Place) -> Result<Page> {
         logarithmic,
         ..
     } = &found;
-    let mut page = place.page(FolderKind::Sweep, &found.case, Some(&head));
-    page.warnings.clone_from(&found.warnings);
     let unstable = |m: &&CycleMember| m.floquet.verdict.stability == CycleStability::Unstable;
     let (low, high) = members.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), m| {
         (l.min(m.value), h.max(m.value))
     });
-    let without = match missing.len() {
-        0 => String::new(),
-        n => format!(" For {n} values none was found."),
-    };
+    let without = if_any(missing.len(), |n| format!(" For {n} values none was found."));
     // all cycles of one case have the same energy figures
     let figures = members.first().map_or(vec![], energies);
     let mut headings = vec![pointer.clone()];

@@ -4,12 +4,14 @@ use serde_json::{Value, json};
 
 use super::{FolderKind, MOST_ROWS, Page, Place, StoredResult, base64, capital};
 use crate::error::Result;
+use crate::output::columns::if_any;
 use crate::output::folder::{CASE, REPORT};
 use crate::output::sweep::text::{kinds, several};
 use crate::output::sweep::{
     CASES, FOLDERS, JOURNAL, JournalSummary, TABLE, about, numbered, pictures, table, warnings,
 };
 use crate::results::sweep::{Sweep, SweepPlan};
+use crate::study::sweep::plan::SweepAxis;
 
 /// Largest number of columns of the page's table; the file contains the rest.
 const MOST_COLUMNS: usize = 40;
@@ -34,11 +36,7 @@ pub fn data(place: &Place) -> Result<Page> {
         1 => " 1 design is missing; the same command computes it.".into(),
         n => format!(" {} are missing; the same command computes them.", several(n)),
     };
-    let varied: Vec<String> = plan
-        .axes
-        .iter()
-        .map(|axis| format!("{} = {}", axis.pointer, axis.spec.as_deref().unwrap_or("as listed")))
-        .collect();
+    let spec = |axis: &SweepAxis| format!("{} = {}", axis.pointer, axis.spec.as_deref().unwrap_or("as listed"));
     let cases = plan.cases.iter().map(|case| format!("case {}", case.name));
     // a lean folder has no pictures
     let drawn = pictures::draw(&plan, &survey)?;
@@ -46,7 +44,7 @@ pub fn data(place: &Place) -> Result<Page> {
         let own = || drawn.iter().find(|(name, _)| *name == file);
         let picture = place
             .picture(file)
-            .or_else(|| Some(base64::image("image/svg+xml", own()?.1.as_bytes()).into()))?;
+            .or_else(|| Some(base64::svg(own()?.1.as_bytes()).into()))?;
         Some(json!({"title": title, "picture": picture, "about": about}))
     };
     let figures = [
@@ -57,7 +55,7 @@ pub fn data(place: &Place) -> Result<Page> {
         ),
         figure("Over two numbers", "map.svg", "Each cell is a design that finished."),
     ];
-    let facts = varied.into_iter().chain(cases).map(|text| capital(&text));
+    let facts = plan.axes.iter().map(spec).chain(cases).map(|text| capital(&text));
     page.fill(json!({
         "label": "Many designs",
         "answer": format!("{} went through {}: {kinds}.{missing}", several(found.rows), plan.command.word()),
@@ -92,10 +90,9 @@ fn rows(place: &Place, found: &Sweep, survey: &JournalSummary) -> Result<Value> 
         }
         Ok(())
     })?;
-    let narrow = match found.columns.len() - columns {
-        0 => String::new(),
-        n => format!(" {n} more columns are in the file."),
-    };
+    let narrow = if_any(found.columns.len() - columns, |n| {
+        format!(" {n} more columns are in the file.")
+    });
     Ok(json!({
         "title": "Every design",
         "about": format!(

@@ -4,10 +4,10 @@ use std::path::Path;
 
 use serde_json::{Value, json};
 
-use super::{FolderKind, Page, Place, StoredResult, base64, csv_table};
+use super::{FolderKind, Page, Place, base64, csv_table};
 use crate::error::Result;
 use crate::output::bands;
-use crate::output::equilibrium::{CSV, JSON, SHAPES};
+use crate::output::equilibrium::{CSV, SHAPES};
 use crate::output::folder::{CASE, open};
 use crate::output::numbers::{counted, duration, quantity, significant, trimmed};
 use crate::results::equilibrium::EquilibriumPath;
@@ -38,9 +38,8 @@ const TILES: [(&str, &str, &str, &str); 4] = [
 
 /// Data of the page.
 pub fn data(place: &Place) -> Result<Page> {
-    let StoredResult { result: found, head } = place.result::<EquilibriumPath>(JSON)?;
-    let mut page = place.page(FolderKind::Equilibrium, &found.case, Some(&head));
-    page.warnings.clone_from(&found.warnings);
+    let (found, mut page) =
+        place.begun::<EquilibriumPath>(FolderKind::Equilibrium, |found| (&found.case, &found.warnings))?;
     let at = found.loads_at_s;
     // share of the loads of the last stage, if it was reached
     let share = found.load_factor.unwrap_or(0.0) - found.via_s.len() as f64;

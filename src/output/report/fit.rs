@@ -2,17 +2,15 @@
 
 use serde_json::json;
 
-use super::{FolderKind, Page, Place, StoredResult};
+use super::{FolderKind, Page, Place, cells};
 use crate::error::Result;
-use crate::output::fit::{CSV, FITTED, JSON, PICTURE};
+use crate::output::fit::{CSV, FITTED, PICTURE};
 use crate::output::numbers::{counted, duration, significant};
 use crate::results::fit::{Bound, Fit, FittedNumber};
 
 /// Page of `fit`.
 pub fn data(place: &Place) -> Result<Page> {
-    let StoredResult { result: found, head } = place.result::<Fit>(JSON)?;
-    let mut page = place.page(FolderKind::Fit, &found.case, Some(&head));
-    page.warnings.clone_from(&found.warnings);
+    let (found, mut page) = place.begun::<Fit>(FolderKind::Fit, |found| (&found.case, &found.warnings))?;
     let tile = |one: &FittedNumber| {
         let error = one
             .standard_error
@@ -26,37 +24,17 @@ pub fn data(place: &Place) -> Result<Page> {
         json!({"label": one.pointer, "value": format!("{}{error}", significant(one.value, 5)), "note": note})
     };
     let row = |(k, one): (usize, &FittedNumber)| {
-        let interval = |k: usize| one.interval_95.map(|i| i[k]);
-        let cells = json!([
-            one.pointer,
-            one.value,
-            one.standard_error,
-            interval(0),
-            interval(1),
-            one.finer_change
-        ]);
-        let correlations = json!(found.correlation[k]);
-        let both = [cells, correlations]
-            .into_iter()
-            .filter_map(|all| all.as_array().cloned());
-        both.flatten().collect::<Vec<_>>()
+        let [low, high] = [0, 1].map(|k| one.interval_95.map(|i| i[k]));
+        let numbers = [Some(one.value), one.standard_error, low, high, one.finer_change];
+        let numbers = numbers.iter().chain(&found.correlation[k]);
+        cells([json!(one.pointer)], numbers.map(|x| json!(x)))
     };
-    let mut headings = [
-        "number",
-        "estimate",
-        "standard error",
-        "95 % from",
-        "95 % to",
-        "change on finer mesh",
-    ]
-    .map(String::from)
-    .to_vec();
-    headings.extend(
-        found
-            .parameters
-            .iter()
-            .map(|one| format!("correlation with {}", one.pointer)),
-    );
+    let first = "number,estimate,standard error,95 % from,95 % to,change on finer mesh".split(',');
+    let correlated = found
+        .parameters
+        .iter()
+        .map(|one| format!("correlation with {}", one.pointer));
+    let headings: Vec<String> = first.map(String::from).chain(correlated).collect();
     let numbers = match found.parameters.len() {
         1 => "One number of the case was".into(),
         n => format!("{n} numbers of the case were"),

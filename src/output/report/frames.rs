@@ -24,30 +24,6 @@ const MOST_PRESSURES: usize = 400;
 /// Number of curves of the last cycle.
 const CURVES: usize = 24;
 
-/// One-dimensional arrays.
-struct Contents {
-    axes: Vec<(String, Vec<f64>)>,
-}
-
-impl Contents {
-    fn read(npz: &mut Npz) -> io::Result<Self> {
-        let names = npz.entries().iter().filter(|e| e.shape.len() == 1);
-        let names: Vec<String> = names.map(|e| e.name.clone()).collect();
-        let axes = names.into_iter().map(|name| {
-            let values = npz.read(&name)?;
-            Ok((name, values))
-        });
-        Ok(Self {
-            axes: axes.collect::<io::Result<_>>()?,
-        })
-    }
-
-    fn axis(&self, name: &str) -> &[f64] {
-        let found = self.axes.iter().find(|a| a.0 == name);
-        found.map_or(&[], |a| a.1.as_slice())
-    }
-}
-
 /// Data of animation, profiles and maps. `frequency` is that of the drive [Hz].
 ///
 /// # Errors
@@ -55,14 +31,15 @@ impl Contents {
 /// The file cannot be read as arrays.
 pub fn read(path: &Path, frequency: Option<f64>) -> io::Result<Value> {
     let mut npz = Npz::open(path)?;
-    let contents = Contents::read(&mut npz)?;
-    let times = contents.axis(TIMES);
-    let theta = contents.axis("theta_node_m");
+    let mut axis = |name: &str| npz.entry(name).is_some().then(|| npz.read(name)).transpose();
+    let mut axis = |name: &str| axis(name).map(Option::unwrap_or_default);
+    let (times, theta, bladder) = (axis(TIMES)?, axis("theta_node_m")?, axis("bladder")?);
+    let (x_f, array) = (axis("x_f")?, axis("array")?);
     if times.is_empty() || theta.is_empty() {
         return Ok(Value::Null);
     }
     let nodes = thinned(theta.len(), MOST_NODES);
-    let groups = pressure_groups(&contents);
+    let groups = pressure_groups(&bladder);
     let a_frame = 4 * nodes.len() + groups.len();
     let most = (MOST_NUMBERS / a_frame).clamp(2, MOST_FRAMES);
     let chosen = thinned(times.len(), most);
@@ -88,7 +65,7 @@ pub fn read(path: &Path, frequency: Option<f64>) -> io::Result<Value> {
         Ok(base64::numbers(rows(&mut npz, name, &chosen, groups)?))
     };
     let (span, cycle) = plot::instants(&kept, frequency, CURVES);
-    let first = |name: &str| base64::numbers(groups.iter().map(|g| mean(g, contents.axis(name))));
+    let first = |values: &[f64]| base64::numbers(groups.iter().map(|g| mean(g, values)));
     Ok(json!({
         "times": base64::numbers(kept.iter().copied()),
         "recorded": times.len(),
@@ -102,9 +79,9 @@ pub fn read(path: &Path, frequency: Option<f64>) -> io::Result<Value> {
         "curvature": field("curvature_1_m", &alone)?,
         "angle": field(BeamField::SectionAngle.name(), &beside)?,
         "pressure": field("pressure_pa", &groups)?,
-        "x_f": first("x_f"),
-        "bladder": first("bladder"),
-        "array": first("array"),
+        "x_f": first(&x_f),
+        "bladder": first(&bladder),
+        "array": first(&array),
     }))
 }
 
@@ -119,8 +96,7 @@ fn thinned(len: usize, most: usize) -> Vec<usize> {
 }
 
 /// Cells along `X_f`: single, or grouped by bladder if there are many.
-fn pressure_groups(contents: &Contents) -> Vec<Vec<usize>> {
-    let bladder = contents.axis("bladder");
+fn pressure_groups(bladder: &[f64]) -> Vec<Vec<usize>> {
     if bladder.len() <= MOST_PRESSURES {
         return (0..bladder.len()).map(|k| vec![k]).collect();
     }

@@ -1,6 +1,6 @@
 //! `history.csv`, thinned to the resolution of a screen without loss of peaks.
 
-use serde_json::{Map, Value, json};
+use serde_json::{Value, json};
 
 use super::base64;
 use crate::discrete::quantities::{Group, Observable, QuantityRole};
@@ -18,6 +18,7 @@ const STRETCHES: usize = 2000;
 pub struct ReportHistory {
     /// Thinned columns; the first is time.
     columns: Vec<Vec<f64>>,
+    /// Their names and units.
     names: Vec<(String, String)>,
     first: Vec<f64>,
     last: Vec<f64>,
@@ -35,15 +36,9 @@ impl ReportHistory {
             return Ok(Self::default());
         }
         let mut found = Self::default();
-        let mut envelope = Envelope::default();
+        let mut envelope = Envelope::new(STRETCHES);
         each_row(recorded, |names, source, row| {
-            if found.names.is_empty() {
-                found.names = names.to_vec();
-                envelope = Envelope::new(found.names.clone(), STRETCHES);
-            }
-            if source != RowOrigin::Covered {
-                envelope.push(row);
-            }
+            envelope.add(names, source, row);
             if source == RowOrigin::Rest {
                 found.stretches += 1;
                 return;
@@ -54,7 +49,7 @@ impl ReportHistory {
             found.last = row.to_vec();
             found.rows += 1;
         })?;
-        found.columns = envelope.columns();
+        (found.columns, found.names) = (envelope.columns(), envelope.names().to_vec());
         Ok(found)
     }
 
@@ -86,41 +81,30 @@ impl ReportHistory {
             return Value::Null;
         }
         let columns = self.names.iter().zip(&self.columns).map(|((name, unit), values)| {
-            let mut all = Map::new();
-            all.insert("name".into(), name.as_str().into());
-            all.insert("unit".into(), unit.as_str().into());
             let one = Observable::named(name);
-            all.insert("group".into(), one.map_or("More", |one| one.group().title()).into());
-            let label = one.map_or_else(|| spoken(name), |one| one.label().into());
-            all.insert("label".into(), label.into());
-            all.insert("about".into(), one.map_or("", Observable::about).into());
-            all.insert("usual".into(), one.is_some_and(usual).into());
-            all.insert("values".into(), base64::numbers(values.iter().copied()));
+            let mut column = json!({
+                "name": name, "unit": unit, "group": one.map_or("More", |one| one.group().title()),
+                "label": one.map_or_else(|| spoken(name), |one| one.label().into()), "about": one.map_or("", Observable::about),
+                "usual": one.is_some_and(usual), "values": base64::numbers(values.iter().copied()),
+            });
             if let Some(widths) = band.column_widths(name) {
-                all.insert(
-                    "widths".into(),
-                    base64::numbers(widths.into_iter().map(|(_, width)| width)),
-                );
+                column["widths"] = base64::numbers(widths.into_iter().map(|(_, width)| width));
             }
-            Value::Object(all)
+            column
         });
         let shown = self.columns.first().map_or(0, Vec::len) as u64;
-        let note = (shown < self.rows && self.stretches == 0).then(|| {
-            format!(
-                "{} output times were written; of every stretch of {} the smallest and the largest value are shown.",
-                count(self.rows),
+        let rows = count(self.rows);
+        let note = match self.stretches {
+            0 if shown < self.rows => Some(format!(
+                "{rows} output times were written; of every stretch of {} the smallest and the largest value are shown.",
                 count(self.rows.div_ceil(shown.div_ceil(2).max(1)))
-            )
-        });
-        let note = note.or_else(|| {
-            (self.stretches > 0).then(|| {
-                format!(
-                    "{} output times were written, most of them in the window at the end; before it the smallest and the largest value \
-                     of every stretch of {ENVELOPE} are shown.",
-                    count(self.rows)
-                )
-            })
-        });
+            )),
+            0 => None,
+            _ => Some(format!(
+                "{rows} output times were written, most of them in the window at the end; before it the smallest and the largest value \
+                 of every stretch of {ENVELOPE} are shown."
+            )),
+        };
         let banded = base64::numbers(band.rows.iter().map(|row| row[0]));
         json!({"columns": columns.chain(others).collect::<Vec<_>>(), "banded": banded, "note": note, "rows": self.rows})
     }

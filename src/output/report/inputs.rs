@@ -12,12 +12,8 @@ use crate::model::network::Feed;
 /// Largest number of signals.
 const MOST: usize = 40;
 
-/// A signal with its name.
-struct Input<'a> {
-    label: String,
-    unit: &'static str,
-    signal: &'a Signal,
-}
+/// A signal with its label and unit.
+type Input<'a> = (String, &'static str, &'a Signal);
 
 /// Columns of all inputs that vary in time, at the instants of a history. If `joined`, pairs of instants stand for stretches of time, and
 /// the values are the extremes of the signal in each.
@@ -25,17 +21,13 @@ pub fn columns(case: &Case, times: &[f64], joined: bool) -> Vec<Value> {
     let network = ResolvedNetwork::from_case(case).ok().flatten();
     let ends = [("root", case.ends.root.resolve()), ("tip", case.ends.tip.resolve())];
     let mut all = loads(case);
-    for (name, end) in &ends {
-        of_end(name, end, &mut all);
-    }
-    if let Some(network) = &network {
-        of_network(network, &mut all);
-    }
-    let changing = all.into_iter().filter(|one| !one.signal.is_constant()).take(MOST);
-    let column = |(number, one): (usize, Input)| {
+    all.extend(ends.iter().flat_map(|(name, end)| of_end(name, end)));
+    all.extend(network.iter().flat_map(of_network));
+    let changing = all.into_iter().filter(|(.., signal)| !signal.is_constant()).take(MOST);
+    let column = |(number, (label, unit, signal)): (usize, Input)| {
         json!({
-            "name": format!("input_{}", number + 1), "unit": one.unit, "group": "What acts", "label": one.label,
-            "about": "a signal of the case", "usual": true, "values": base64::numbers(values(one.signal, times, joined)),
+            "name": format!("input_{}", number + 1), "unit": unit, "group": "What acts", "label": label,
+            "about": "a signal of the case", "usual": true, "values": base64::numbers(values(signal, times, joined)),
         })
     };
     changing.enumerate().map(column).collect()
@@ -72,84 +64,57 @@ fn loads(case: &Case) -> Vec<Input<'_>> {
             Load::RestCurvature(_) => ("curvature at rest", "1/m"),
             Load::Gravity { .. } => return None,
         };
-        Some(Input {
-            label: format!("load {}: {what}", k + 1),
-            unit,
-            signal: &load.distributed()?.1.signal,
-        })
+        let label = format!("load {}: {what}", k + 1);
+        Some((label, unit, &load.distributed()?.1.signal))
     });
     let attached = case.attachments.iter().enumerate().flat_map(|(k, one)| {
-        one.forces().map(move |(key, signal)| Input {
-            label: format!("attachment {}: {}", k + 1, key.trim_end_matches("_n").replace('_', " ")),
-            unit: "N",
-            signal,
-        })
+        let label = move |key: &str| format!("attachment {}: {}", k + 1, key.trim_end_matches("_n").replace('_', " "));
+        one.forces().map(move |(key, signal)| (label(key), "N", signal))
     });
-    let frame = case.rotating_frame.iter().map(|frame| Input {
-        label: "angular velocity of the frame".into(),
-        unit: "rad/s",
-        signal: &frame.angular_velocity_rad_s,
-    });
+    let turns = case.rotating_frame.iter().map(|frame| &frame.angular_velocity_rad_s);
+    let frame = turns.map(|signal| ("angular velocity of the frame".into(), "rad/s", signal));
     distributed.chain(attached).chain(frame).collect()
 }
 
-fn of_end<'a>(name: &str, end: &'a ResolvedEnd, all: &mut Vec<Input<'a>>) {
-    let mut add = |what: &str, unit, signal| {
-        all.push(Input {
-            label: format!("{name}: {what}"),
-            unit,
-            signal,
-        });
+fn of_end<'a>(name: &str, end: &'a ResolvedEnd) -> Vec<Input<'a>> {
+    let translation = |[axis, symbol]: [&str; 2], one: &'a Translation| match one {
+        Translation::Displacement(signal) => (format!("{name}: {symbol}"), "m", signal),
+        Translation::Force(signal) => (format!("{name}: force {axis}"), "N", signal),
     };
-    for (axis, symbol, one) in [("x", "u₁", &end.transverse), ("z", "u₃", &end.axial)] {
-        match one {
-            Translation::Displacement(signal) => add(symbol, "m", signal),
-            Translation::Force(signal) => add(&format!("force {axis}"), "N", signal),
-        }
-    }
-    match &end.rotation {
-        Rotation::Slope(signal) => add("slope", "rad", signal),
-        Rotation::Moment(signal) => add("moment", "N m", signal),
-    }
+    let rotation = match &end.rotation {
+        Rotation::Slope(signal) => (format!("{name}: slope"), "rad", signal),
+        Rotation::Moment(signal) => (format!("{name}: moment"), "N m", signal),
+    };
+    let mut all = vec![
+        translation(["x", "u₁"], &end.transverse),
+        translation(["z", "u₃"], &end.axial),
+        rotation,
+    ];
     if let Some(follower) = &end.follower {
-        add("force along the end", "N", &follower.normal);
-        add("force across the end", "N", &follower.shear);
+        all.push((format!("{name}: force along the end"), "N", &follower.normal));
+        all.push((format!("{name}: force across the end"), "N", &follower.shear));
     }
+    all
 }
 
-fn of_network<'a>(network: &'a ResolvedNetwork, all: &mut Vec<Input<'a>>) {
-    for port in &network.ports {
-        all.push(Input {
-            label: format!("pressure at {}", port.name),
-            unit: "Pa",
-            signal: &port.pressure,
-        });
-    }
-    for source in &network.sources {
+fn of_network(network: &ResolvedNetwork) -> Vec<Input<'_>> {
+    let ports = network.ports.iter();
+    let ports = ports.map(|port| (format!("pressure at {}", port.name), "Pa", &port.pressure));
+    let sources = network.sources.iter().map(|source| {
         let (what, unit) = match source.feed {
             Feed::Flow(_) => ("flow into", "m^3/s"),
             Feed::Volume(_) => ("volume into", "m^3"),
         };
-        all.push(Input {
-            label: format!("{what} {}", source.name),
-            unit,
-            signal: source.feed.signal(),
+        (format!("{what} {}", source.name), unit, source.feed.signal())
+    });
+    let links = network.links.iter().enumerate().flat_map(|(k, link)| {
+        let opening = link.opening.as_ref();
+        let opening = opening.map(|signal| (format!("opening of link {}", k + 1), "1", signal));
+        let pump = link.pump.as_ref().map(|pump| {
+            let unit = if pump.curve.is_none() { "Pa" } else { "1" };
+            (format!("pump of link {}", k + 1), unit, &pump.pressure)
         });
-    }
-    for (k, link) in network.links.iter().enumerate() {
-        if let Some(opening) = &link.opening {
-            all.push(Input {
-                label: format!("opening of link {}", k + 1),
-                unit: "1",
-                signal: opening,
-            });
-        }
-        if let Some(pump) = &link.pump {
-            all.push(Input {
-                label: format!("pump of link {}", k + 1),
-                unit: if pump.curve.is_none() { "Pa" } else { "1" },
-                signal: &pump.pressure,
-            });
-        }
-    }
+        opening.into_iter().chain(pump)
+    });
+    ports.chain(sources).chain(links).collect()
 }

@@ -197,6 +197,15 @@ impl<'a> Place<'a> {
         super::folder::result(&self.path(name))
     }
 
+    /// Reads the result that identifies a kind and begins its page; `about` returns its case and its warnings.
+    fn begun<T: ResultFile>(&self, kind: FolderKind, about: impl Fn(&T) -> (&str, &[String])) -> Result<(T, Page)> {
+        let StoredResult { result, head } = self.result::<T>(kind.sign())?;
+        let (case, warnings) = about(&result);
+        let mut page = self.page(kind, case, Some(&head));
+        page.warnings = warnings.to_vec();
+        Ok((result, page))
+    }
+
     /// A picture of the folder as image data; for one that is too large, its file and size.
     fn picture(&self, name: &str) -> Option<Value> {
         let mut bytes = vec![];
@@ -206,7 +215,7 @@ impl<'a> Place<'a> {
             let size = fs::metadata(self.path(name)).ok()?.len();
             return Some(json!({"file": name, "bytes": size}));
         }
-        Some(base64::image("image/svg+xml", &bytes).into())
+        Some(base64::svg(&bytes).into())
     }
 
     /// Files beside the page, sorted by name; omits hidden files and folders.
@@ -218,12 +227,12 @@ impl<'a> Place<'a> {
 
     /// Common part of every page, with the given name.
     fn page(&self, kind: FolderKind, name: &str, head: Option<&Head>) -> Page {
-        let numbers = self.case.as_ref().map(facts::characteristic_of);
-        self.page_with(kind, name, head, numbers.unwrap_or_default())
+        self.page_with(kind, name, head, None)
     }
 
-    /// [`Place::page`] with given rows of characteristic numbers.
-    fn page_with(&self, kind: FolderKind, name: &str, head: Option<&Head>, numbers: Vec<Value>) -> Page {
+    /// [`Place::page`] with given rows of characteristic numbers, by default those of the case.
+    fn page_with(&self, kind: FolderKind, name: &str, head: Option<&Head>, numbers: Option<Vec<Value>>) -> Page {
+        let numbers = numbers.or_else(|| self.case.as_ref().map(facts::characteristic_of));
         let mut page = Page {
             name: name.into(),
             ..Page::default()
@@ -234,7 +243,7 @@ impl<'a> Place<'a> {
             "about": self.case.as_ref().map_or("", |c| c.about.as_str()), "files": self.files(),
             "cell": self.case.as_ref().map_or_else(Vec::new, cell::of_case), "scene": self.case.as_ref().and_then(scene::to_json),
             // placeholder: see `text`
-            "parameters": null, "case_text": text, "characteristic": numbers,
+            "parameters": null, "case_text": text, "characteristic": numbers.unwrap_or_default(),
         }));
         page
     }
@@ -262,6 +271,11 @@ impl Page {
     fn put(&mut self, key: &str, value: impl Into<Value>) {
         self.data.insert(key.into(), value.into());
     }
+}
+
+/// Cells of a row of a table.
+fn cells(first: impl IntoIterator<Item = Value>, others: impl IntoIterator<Item = Value>) -> Value {
+    first.into_iter().chain(others).collect()
 }
 
 /// Folder of a file that exists or will be written.

@@ -5,11 +5,11 @@ use std::path::Path;
 
 use serde_json::{Map, Value, json};
 
-use super::{FolderKind, Page, Place, StoredResult, base64, capital, csv_table};
+use super::{FolderKind, Page, Place, base64, capital, csv_table};
 use crate::error::Result;
 use crate::output::bands;
 use crate::output::folder::CASE;
-use crate::output::modes::{ARRAYS, CSV, JSON, PICTURE};
+use crate::output::modes::{ARRAYS, CSV, PICTURE};
 use crate::output::npz::Npz;
 use crate::output::numbers::{counted, significant};
 use crate::results::modes::{LinearisedState, ModesRecord};
@@ -32,24 +32,20 @@ const MOST_NUMBERS: usize = 420_000;
 
 /// Data of the page.
 pub fn data(place: &Place) -> Result<Page> {
-    let StoredResult { result: found, head } = place.result::<ModesRecord>(JSON)?;
-    let mut page = place.page(FolderKind::Modes, &found.case, Some(&head));
+    let (found, mut page) = place.begun::<ModesRecord>(FolderKind::Modes, |found| (&found.case, &found.warnings))?;
     let (word, tone) = if found.stable {
         ("stable", "good")
     } else {
         ("unstable", "bad")
     };
     let table = csv_table::read(&place.path(CSV), |name| COLUMNS.contains(&name));
-    page.warnings.clone_from(&found.warnings);
     let shapes = shapes(&place.path(ARRAYS));
     if let Some(e) = shapes.as_ref().err().filter(|e| e.kind() != io::ErrorKind::NotFound) {
         let warning = format!("{ARRAYS} cannot be read ({e}), so no shapes are shown.");
         page.warnings.push(warning);
     }
-    let near = match found.near_hz {
-        0.0 => String::new(),
-        near => format!(" --near {near}"),
-    };
+    let near = Some(found.near_hz).filter(|near| *near != 0.0);
+    let near = near.map_or(String::new(), |near| format!(" --near {near}"));
     // Older results do not store the state. At 0 s it is then taken as the start, later as an equilibrium.
     let at = match (found.state, found.at_s) {
         (Some(LinearisedState::Start), _) | (None, 0.0) => String::new(),
@@ -92,11 +88,10 @@ fn with_bands(mut table: Value, found: &ModesRecord) -> Value {
         ("frequency [Hz]", "frequency_hz"),
         ("growth rate [1/s]", "growth_per_s"),
     ] {
-        let headings = table["headings"].as_array_mut();
-        let Some((headings, place)) = headings.and_then(|all| {
-            let place = all.iter().position(|own| own == heading)?;
-            Some((all, place + 1))
-        }) else {
+        let Some(headings) = table["headings"].as_array_mut() else {
+            continue;
+        };
+        let Some(place) = headings.iter().position(|own| own == heading).map(|k| k + 1) else {
             continue;
         };
         headings.insert(place, json!(format!("95 % of samples: {heading}")));

@@ -1,20 +1,18 @@
 //! Page of an optimum.
 
-use serde_json::json;
+use serde_json::{Value, json};
 
-use super::{FolderKind, Page, Place, StoredResult};
+use super::{FolderKind, Page, Place, cells};
 use crate::error::Result;
 use crate::output::numbers::{duration, percent, quantity, significant};
-use crate::output::optimum::{BEST, CSV, JSON, PICTURE, place as position, ranked};
+use crate::output::optimum::{BEST, CSV, PICTURE, place as position, ranked};
 use crate::output::sweep::text::several;
 use crate::output::sweep::unit;
 use crate::results::optimum::{DerivativeSource, Optimum, Variable};
 
 /// Page of `optimize`.
 pub fn data(place: &Place) -> Result<Page> {
-    let StoredResult { result: found, head } = place.result::<Optimum>(JSON)?;
-    let mut page = place.page(FolderKind::Optimum, &found.case, Some(&head));
-    page.warnings.clone_from(&found.warnings);
+    let (found, mut page) = place.begun::<Optimum>(FolderKind::Optimum, |found| (&found.case, &found.warnings))?;
     let goal = &found.goal;
     // a figure with its unit
     let figure = |value: f64| quantity(value, unit(&goal.figure), 5);
@@ -48,16 +46,10 @@ pub fn data(place: &Place) -> Result<Page> {
     let alternatives = alternatives.iter();
     let alternatives = alternatives.map(|one| json!([one.name, one.value, null, null, null, null, null, null]));
     let numbers = found.variables.iter().map(|one| {
-        json!([
-            one.pointer,
-            one.value,
-            one.start,
-            one.low,
-            one.high,
-            one.within_1_percent.map(|w| w[0]),
-            one.within_1_percent.map(|w| w[1]),
-            one.gain
-        ])
+        let [below, above] = [0, 1].map(|k| one.within_1_percent.map(|w| w[k]));
+        let numbers = [one.value, one.start, one.low, one.high].map(Value::from);
+        let others = [below, above, one.gain].map(|x| json!(x));
+        cells([json!(one.pointer)], numbers.into_iter().chain(others))
     });
     let limits = found.limits.iter().map(|one| {
         let bound = quantity(one.limit.bound, unit(&one.limit.figure), 6);

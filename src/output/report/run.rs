@@ -25,26 +25,18 @@ const ROUND_OFF: f64 = 1e-14;
 
 /// Data of the page.
 pub fn data(place: &Place) -> Result<Page> {
-    let found = match place.path(SUMMARY).is_file() {
-        true => Some(summary::found(place.dir)?),
-        false => None,
-    };
+    let there = place.path(SUMMARY).is_file();
+    let found = there.then(|| summary::found(place.dir)).transpose()?;
     if let (Some(found), None) = (&found, place.history) {
-        summary::verify_table(place.dir, HISTORY, &found.result)?;
-        summary::verify_table(place.dir, ENVELOPE, &found.result)?;
-        summary::verify_table(place.dir, ERRORS, &found.result)?;
+        for name in [HISTORY, ENVELOPE, ERRORS] {
+            summary::verify_table(place.dir, name, &found.result)?;
+        }
     }
     let band = error_band::read(place.dir)?;
     let (summary, head) = found.map(|found| (found.result, found.head)).unzip();
-    let name = summary
-        .as_ref()
-        .map(|s| s.case.clone())
-        .or_else(|| place.case.as_ref().map(|c| c.name.clone()));
-    let frequency = place
-        .case
-        .as_ref()
-        .and_then(characteristic::forcing_period)
-        .map(f64::recip);
+    let case = place.case.as_ref();
+    let name = summary.as_ref().map(|s| &s.case).or(case.map(|c| &c.name));
+    let frequency = case.and_then(characteristic::forcing_period).map(f64::recip);
     let fields = place.path(FIELDS);
     // reads the fields in a thread
     let (motion, recorded) = thread::scope(|scope| {
@@ -56,14 +48,9 @@ pub fn data(place: &Place) -> Result<Page> {
         (motion.join(), recorded)
     });
     let (history, columns) = recorded?;
-    let name = name.as_deref().unwrap_or("unnamed");
-    let mut page = match &summary {
-        Some(summary) => {
-            let numbers = facts::characteristic(&summary.characteristic);
-            place.page_with(FolderKind::Run, name, head.as_ref(), numbers)
-        }
-        None => place.page(FolderKind::Run, name, head.as_ref()),
-    };
+    let name = name.map_or("unnamed", String::as_str);
+    let numbers = summary.as_ref().map(|s| facts::characteristic(&s.characteristic));
+    let mut page = place.page_with(FolderKind::Run, name, head.as_ref(), numbers);
     let mut notes: Vec<String> = vec![];
     let motion = match motion {
         Ok(motion) => motion,
@@ -175,36 +162,24 @@ fn answer(summary: &Summary) -> Option<String> {
     ))
 }
 
-/// Content of a tile.
-struct Shown {
-    text: String,
-    band: Option<String>,
-}
+/// Text of a tile, and of its band.
+type Shown = (String, Option<String>);
 
-impl Shown {
-    /// Text without a band.
-    fn describe(text: String) -> Self {
-        Self { text, band: None }
-    }
-
-    /// A figure of a quantity in a unit (`%` for a fraction) with its error; `figures` lists the candidates for its name.
-    fn figure(summary: &Summary, (name, figures): (&str, &[&str]), value: f64, unit: &str) -> Self {
-        let formatted = |x: f64, digits: usize| match (unit, digits) {
-            ("%", 3) => percent(x),
-            ("%", _) => format!("{} %", significant(100.0 * x, digits)),
-            _ => quantity(x, unit, digits),
-        };
-        let with = |error: f64| match unit {
-            "%" => with_error(100.0 * value, 100.0 * error, "1") + " %",
-            _ => with_error(value, error, unit),
-        };
-        let band = bands::find(&summary.bands, name, figures, value);
-        let error = figures.iter().find_map(|figure| summary.error(name, figure));
-        Self {
-            text: error.map_or_else(|| formatted(value, 3), with),
-            band: band.map(|band| bands::beside(band, value, &formatted)),
-        }
-    }
+/// A figure of a quantity in a unit (`%` for a fraction) with its error; `figures` lists the candidates for its name.
+fn figure(summary: &Summary, (name, figures): (&str, &[&str]), value: f64, unit: &str) -> Shown {
+    let formatted = |x: f64, digits: usize| match (unit, digits) {
+        ("%", 3) => percent(x),
+        ("%", _) => format!("{} %", significant(100.0 * x, digits)),
+        _ => quantity(x, unit, digits),
+    };
+    let with = |error: f64| match unit {
+        "%" => with_error(100.0 * value, 100.0 * error, "1") + " %",
+        _ => with_error(value, error, unit),
+    };
+    let band = bands::find(&summary.bands, name, figures, value);
+    let error = figures.iter().find_map(|figure| summary.error(name, figure));
+    let text = error.map_or_else(|| formatted(value, 3), with);
+    (text, band.map(|band| bands::beside(band, value, &formatted)))
 }
 
 /// Names of the largest value of a quantity, and of an energy at the end; over the period for a cycle.
@@ -215,17 +190,17 @@ fn tiles(summary: &Summary) -> Vec<Value> {
     let largest = |name: &str| summary.quantity(name)?.largest();
     let mut all = vec![];
     let mut tile = |label: &str, shown: Option<Shown>, note: &str| {
-        if let Some(Shown { text, band }) = shown {
+        if let Some((text, band)) = shown {
             all.push(json!({"label": label, "value": text, "note": note, "band": band}));
         }
     };
     let last = |name: &str, unit: &str| {
         let value = summary.quantity(name)?.last?;
-        Some(Shown::figure(summary, (name, &AT_THE_END), value, unit))
+        Some(figure(summary, (name, &AT_THE_END), value, unit))
     };
     let most = |name: &str, unit: &str| {
         let value = settled(largest(name)?);
-        Some(Shown::figure(summary, (name, &LARGEST), value, unit))
+        Some(figure(summary, (name, &LARGEST), value, unit))
     };
     let tip = [
         (Interest::TipU1, "Tip, across", "largest deflection u₁"),
@@ -240,11 +215,9 @@ fn tiles(summary: &Summary) -> Vec<Value> {
         let settles = step
             .settling_time_5_percent_s
             .map_or(String::new(), |t| format!("; within 5 % after {}", quantity(t, "s", 3)));
-        tile(
-            "Rise time",
-            step.rise_time_s.map(|t| Shown::describe(quantity(t, "s", 3))),
-            &format!("of u₁ at the tip, from 10 to 90 % of its way{settles}"),
-        );
+        let rises = step.rise_time_s.map(|t| (quantity(t, "s", 3), None));
+        let way = format!("of u₁ at the tip, from 10 to 90 % of its way{settles}");
+        tile("Rise time", rises, &way);
     }
     let window = summary
         .quantity("max_pressure_pa")
@@ -253,28 +226,20 @@ fn tiles(summary: &Summary) -> Vec<Value> {
         format!("in any bladder; {} in the last part", quantity(p, "Pa", 3))
     });
     tile("Largest pressure", most("max_pressure_pa", "Pa"), &window);
-    tile(
-        "Energy put in",
-        last("input_energy_j", "J"),
-        "by loads, driven ends and ports",
-    );
+    let put_in = last("input_energy_j", "J");
+    tile("Energy put in", put_in, "by loads, driven ends and ports");
     tile("Harvested", last("harvested_energy_j", "J"), "by the turbines");
     let power = |name: &str| summary.quantity(name)?.window_power_w;
     let harvested = power("harvested_energy_j").map(|p| {
-        let mean = Shown::figure(summary, ("harvested_power_w", &["mean"]), p, "W");
-        match mean.band {
-            None => Shown::figure(summary, ("harvested_energy_j", &["window_power_w"]), p, "W"),
+        let mean = figure(summary, ("harvested_power_w", &["mean"]), p, "W");
+        match mean.1 {
+            None => figure(summary, ("harvested_energy_j", &["window_power_w"]), p, "W"),
             Some(_) => mean,
         }
     });
-    tile(
-        "Power harvested",
-        harvested,
-        &format!(
-            "mean over the last part; put in: {}",
-            power("input_energy_j").map_or_else(|| "unknown".into(), |p| quantity(p, "W", 3))
-        ),
-    );
+    let put_in = power("input_energy_j").map_or_else(|| "unknown".into(), |p| quantity(p, "W", 3));
+    let note = format!("mean over the last part; put in: {put_in}");
+    tile("Power harvested", harvested, &note);
     let efficiency = summary.quantity("efficiency");
     let absent = efficiency.is_some_and(|q| q.final_absent.is_some());
     let without = match absent {
@@ -284,16 +249,11 @@ fn tiles(summary: &Summary) -> Vec<Value> {
     let window = efficiency.and_then(|q| q.window).map_or(without.into(), |e| {
         format!("{without}; {} in the last part", percent(e))
     });
-    let share = efficiency
-        .and_then(|q| q.last)
-        .map(|e| Shown::figure(summary, ("efficiency", &AT_THE_END), e, "%"));
-    tile("Efficiency", share, &window);
+    tile("Efficiency", last("efficiency", "%"), &window);
     let open = summary.balances.energy_residual_relative;
-    tile(
-        "Unaccounted energy",
-        open.is_finite().then(|| Shown::describe(percent(open))),
-        "of the largest energy: the error of the integration",
-    );
+    let open = open.is_finite().then(|| (percent(open), None));
+    let note = "of the largest energy: the error of the integration";
+    tile("Unaccounted energy", open, note);
     all
 }
 

@@ -22,28 +22,21 @@ pub fn to_json(case: &Case) -> Option<Value> {
     }
     let end_s = case.time.end_s;
     let segments = spans::segments(case);
-    let heights: Option<Vec<f64>> =
-        (!segments.is_empty()).then(|| segments.iter().map(|one| one.beam.height_m).collect());
-    let highest = heights.iter().flatten().copied().fold(0.0, f64::max);
-    let height = if heights.is_some() { highest } else { beam.height_m };
-    let in_bladders = |one: &spans::SegmentValues| {
-        one.bladders
-            .as_ref()
-            .map_or([0.0; 2], |rows| rows.each_ref().map(|b| b.height_m))
+    let heights: Vec<f64> = segments.iter().map(|one| one.beam.height_m).collect();
+    let height = heights.iter().copied().reduce(f64::max).unwrap_or(beam.height_m);
+    // of each segment, if they differ
+    let graded = !segments.is_empty();
+    let both_rows = |size: fn(&Bladders) -> f64| {
+        let of = |rows: &[Bladders; 2]| rows.each_ref().map(size);
+        let all = segments.iter().map(|one| one.bladders.as_ref().map_or([0.0; 2], of));
+        graded.then(|| all.collect::<Vec<_>>())
     };
     let volume = |b: &Bladders| format!("{} ml", significant(b.length_m * b.height_m * b.width_m * 1e6, 3));
-    let of_bladders: Option<Vec<[f64; 2]>> = heights.as_ref().map(|_| segments.iter().map(in_bladders).collect());
-    let widths = |one: &spans::SegmentValues| {
-        one.bladders
-            .as_ref()
-            .map_or([0.0; 2], |rows| rows.each_ref().map(|b| b.width_m))
-    };
-    let graded = heights.is_some();
     Some(json!({
         "length": beam.length_m,
         "borders": graded.then(|| spans::segment_ends(case)),
         "height": height,
-        "heights": heights,
+        "heights": graded.then_some(heights),
         "line": beam.line_height(),
         "width": beam.width_m,
         "size": format!(
@@ -53,13 +46,13 @@ pub fn to_json(case: &Case) -> Option<Value> {
         "bladders": case.bladders.as_ref().zip(ResolvedNetwork::from_case(case).ok()?).map(|(b, network)| json!({
             "per_row": b.per_row,
             "present": (0..2 * b.per_row).map(spans::bladders(case)).collect::<Vec<_>>(),
-            "heights": of_bladders,
-            "widths": graded.then(|| segments.iter().map(widths).collect::<Vec<_>>()),
+            "heights": both_rows(|b| b.height_m),
+            "widths": both_rows(|b| b.width_m),
             "length": b.length_m,
             "height": b.height_m,
             "width": b.width_m,
             "volume": volume(b),
-            "volumes": heights.as_ref().map(|_| segments.iter().map(|one| one.bladders.as_ref().map(|rows| rows.each_ref().map(volume))).collect::<Vec<_>>()),
+            "volumes": graded.then(|| segments.iter().map(|one| one.bladders.as_ref().map(|rows| rows.each_ref().map(volume))).collect::<Vec<_>>()),
             "network": network.component_of_bladder,
             "outlines": case.section.as_ref().and_then(super::cell::outlines),
         })),

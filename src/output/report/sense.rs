@@ -2,7 +2,7 @@
 
 use serde_json::json;
 
-use super::{FolderKind, Page, Place, StoredResult};
+use super::{FolderKind, Page, Place, cells};
 use crate::error::Result;
 use crate::output::numbers::{counted, significant};
 use crate::output::sense as files;
@@ -10,9 +10,7 @@ use crate::results::sense::Sensed;
 
 /// Data of the page.
 pub fn data(place: &Place) -> Result<Page> {
-    let StoredResult { result: found, head } = place.result::<Sensed>(files::JSON)?;
-    let mut page = place.page(FolderKind::Sense, &found.case, Some(&head));
-    page.warnings.clone_from(&found.warnings);
+    let (found, mut page) = place.begun::<Sensed>(FolderKind::Sense, |found| (&found.case, &found.warnings))?;
     let mut facts = vec![counted(found.bladders.len() as u64, "bladder")];
     if !found.rows.is_empty() {
         facts.push(counted(found.rows.len() as u64, "row") + " of measurements");
@@ -39,7 +37,7 @@ pub fn data(place: &Place) -> Result<Page> {
             "headings": headings.collect::<Vec<String>>(),
             "rows": found.choice.iter().map(|one| {
                 let first = [json!(one.bladders.len()), json!(files::list(&one.bladders))];
-                first.into_iter().chain(one.errors.iter().map(|error| json!(error))).collect::<Vec<_>>()
+                cells(first, one.errors.iter().map(|error| json!(error)))
             }).collect::<Vec<_>>(),
             "file": files::SENSORS,
         }),

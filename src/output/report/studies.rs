@@ -2,14 +2,12 @@
 
 use serde_json::{Value, json};
 
-use super::{FolderKind, Page, Place, StoredResult, capital};
+use super::{FolderKind, Page, Place, capital};
 use crate::error::Result;
-use crate::output::effects::{self as effects_files, ShownQuantity};
+use crate::output::effects::{self as effects_files, Bar, ShownQuantity};
 use crate::output::folder::CASE;
 use crate::output::numbers::{counted, duration, percent, significant};
-use crate::output::plot::ablation::Bar;
-use crate::output::plot::workprecision::{MeshLine, RunMarker, WorkPrecision};
-use crate::output::study as study_files;
+use crate::output::study::{self as study_files, MeshLine, RunMarker, mesh_lines, spoken};
 use crate::results::studies::{Ablation, Study};
 use crate::study::accuracy::study::StudyPoint;
 use crate::study::accuracy::{Budget, Scheme, StudyPlan};
@@ -27,11 +25,8 @@ fn method(scheme: Scheme) -> String {
 
 /// Page of `study`: cost of accuracy.
 pub fn study(place: &Place) -> Result<Page> {
-    let StoredResult { result: found, head } = place.result::<Study>(study_files::JSON)?;
-    let mut page = place.page(FolderKind::Study, &found.case, Some(&head));
+    let (found, mut page) = place.begun::<Study>(FolderKind::Study, |found| (&found.case, &found.notes))?;
     let measure = found.measure().map_or("", |measure| measure.name.as_str());
-    page.warnings.clone_from(&found.notes);
-    let charts = study_files::picture(&found).and_then(|data| cost(&data));
     let row = |(k, point): (usize, &StudyPoint)| {
         let (trial, error) = (&point.trial, found.error(k));
         let setting = trial.setting;
@@ -59,7 +54,7 @@ pub fn study(place: &Place) -> Result<Page> {
             format!("{} spent", duration(found.spent)),
             format!("judged by {measure}"),
         ],
-        "charts": charts.into_iter().collect::<Vec<_>>(),
+        "charts": cost(&found).into_iter().collect::<Vec<_>>(),
         "table": {
             "title": "Every setting",
             "about": format!("The error is the largest difference of {measure} from the best reference, over its largest value. \
@@ -74,8 +69,9 @@ pub fn study(place: &Place) -> Result<Page> {
 }
 
 /// Chart of error and time, one mark per run.
-fn cost(data: &WorkPrecision) -> Option<Value> {
-    let mut meshes: Vec<usize> = data.lines.iter().map(|line| line.cells).collect();
+fn cost(found: &Study) -> Option<Value> {
+    let (measure, all) = (found.measure()?, mesh_lines(found));
+    let mut meshes: Vec<usize> = all.iter().map(|line| line.cells).collect();
     meshes.sort_unstable();
     meshes.dedup();
     let drawn = |marker: &&RunMarker| marker.error > 0.0 && marker.least_s > 0.0;
@@ -106,8 +102,8 @@ fn cost(data: &WorkPrecision) -> Option<Value> {
             })
         })
     };
-    let lines: Vec<Value> = data.lines.iter().filter_map(series).collect();
-    let markers = data.lines.iter().flat_map(|line| &line.markers).filter(drawn);
+    let lines: Vec<Value> = all.iter().filter_map(series).collect();
+    let markers = all.iter().flat_map(|line| &line.markers).filter(drawn);
     let mut front: Vec<[f64; 2]> = markers.filter(|m| m.front).map(|m| [m.error, m.least_s]).collect();
     front.sort_by(|a, b| b[0].total_cmp(&a[0]));
     (!lines.is_empty()).then(|| {
@@ -117,17 +113,17 @@ fn cost(data: &WorkPrecision) -> Option<Value> {
                 "Each mark is one setting: a mesh, a method and a tolerance. The error is that of {}. Settings further left are more exact, \
                  those further down are faster. The settings worth using lie on the shaded line along the lower left edge. For hollow marks, and \
                  in the dark area at the left, the reference is too coarse to judge the error. Broken lines are one-step methods.",
-                data.measure
+                spoken(&measure.name)
             ),
             "x": {"name": "relative error", "unit": "1"}, "y": {"name": "least wall time", "unit": "s"},
-            "series": lines, "front": front, "limit": {"at": 10.0 * data.own},
+            "series": lines, "front": front, "limit": {"at": 10.0 * measure.own().max},
         })
     })
 }
 
 /// Chart of the changes without each effect.
 fn changes(found: &Ablation) -> Value {
-    let data = effects_files::bars(found, &ShownQuantity::choose(found, None));
+    let shown = ShownQuantity::choose(found, None);
     let row = |bar: &Bar| {
         let verdict = bar.verdict.map(|verdict| json!(verdict));
         let verdict = verdict
@@ -152,7 +148,7 @@ fn changes(found: &Ablation) -> Value {
             "work": bar.work.is_finite().then_some(bar.work), "words": format!("{verdict}{most}{work}"),
         })
     };
-    let own = data.own.map_or(String::new(), |own| {
+    let own = shown.own(found).map_or(String::new(), |own| {
         format!(" Changes below {} are the integrator's own error.", percent(own))
     });
     json!({
@@ -160,10 +156,10 @@ fn changes(found: &Ablation) -> Value {
         "about": format!(
             "For every effect, the full model is run once more without it. Bar: the change of {}; ring: that of the quantity that changes most. \
              Where the ring stays left of the broken line at {}, the effect may be left out.{own}",
-            data.measure,
+            shown.describe(),
             percent(found.tolerance)
         ),
-        "rows": data.bars.iter().map(row).collect::<Vec<_>>(),
+        "rows": effects_files::bars(found, &shown).iter().map(row).collect::<Vec<_>>(),
     })
 }
 
@@ -181,8 +177,7 @@ fn options(plan: &StudyPlan) -> String {
 
 /// Page of `effects`: change of results without each effect.
 pub fn effects(place: &Place) -> Result<Page> {
-    let StoredResult { result: found, head } = place.result::<Ablation>(effects_files::JSON)?;
-    let mut page = place.page(FolderKind::Effects, &found.case, Some(&head));
+    let (found, mut page) = place.begun::<Ablation>(FolderKind::Effects, |found| (&found.case, &[]))?;
     let row = |r: &AblationRow| -> Value {
         let left_out = r.left_out.as_ref();
         let largest = left_out.and_then(|c| c.largest.as_ref());

@@ -94,10 +94,9 @@ fn drawn(found: &Sensed) -> Option<String> {
     match found.rows.as_slice() {
         [] => {}
         [row] => {
-            let of_profile = found.amplitudes.iter().zip(&row.amplitudes);
-            let line = of_profile
-                .filter(|(a, _)| a.unit == "N/m")
-                .filter_map(|(a, one)| Some((a.place?, one.as_ref()?)));
+            let all = found.amplitudes.iter().zip(&row.amplitudes);
+            let of_profile = all.filter(|(a, _)| a.unit == "N/m");
+            let line = of_profile.filter_map(|(a, one)| Some((a.place?, one.as_ref()?)));
             let across = match found.band {
                 BandKind::LocalMean => "mean force across",
                 _ => "force across",
@@ -199,13 +198,8 @@ fn pressures(found: &Sensed) -> Option<Panel> {
     };
     let row = found.rows.iter().max_by(|a, b| size(a).total_cmp(&size(b)))?;
     let series = [(0, 1), (1, -1)].into_iter().flat_map(|(colour, side)| {
-        let own = || {
-            found
-                .bladders
-                .iter()
-                .enumerate()
-                .filter(move |(_, label)| label.signum() == side)
-        };
+        let all = || found.bladders.iter().enumerate();
+        let own = || all().filter(move |(_, label)| label.signum() == side);
         let line = own().map(|(k, label)| (label.abs() as f64, row.modelled_pa[k]));
         let points = own().filter_map(|(k, label)| Some((label.abs() as f64, row.measured_pa[k]?)));
         beside(line.collect(), points.collect(), colour)

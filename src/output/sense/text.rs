@@ -1,7 +1,7 @@
 //! Text of loads estimated from pressures.
 
 use crate::error;
-use crate::output::columns::table as table_of;
+use crate::output::columns::{if_any, joined, table as table_of, warnings};
 use crate::output::numbers::{count, counted, significant, trimmed};
 use crate::results::sense::{BandKind, Banded, NoiseFrom, Sensed, Unknown};
 use crate::study::sense::basis::Basis;
@@ -15,9 +15,8 @@ const MANY: usize = 6;
 pub fn describe(found: &Sensed) -> String {
     let mut text = about_sight(found);
     if !found.rows.is_empty() {
-        let doubts: String = found.doubts.iter().map(|doubt| format!("warning: {doubt}\n")).collect();
-        if !doubts.is_empty() {
-            text += &format!("\n{doubts}");
+        if !found.doubts.is_empty() {
+            text += &format!("\n{}", warnings(&found.doubts));
         }
         let (headings, rows) = table(found);
         // over time some instants from start to end, otherwise the first rows
@@ -27,12 +26,10 @@ pub fn describe(found: &Sensed) -> String {
         };
         let all = rows.len();
         let lines: Vec<_> = rows.into_iter().step_by(every.max(1)).take(ROWS).collect();
-        let more = all - lines.len();
-        text += &format!("\n{}", table_of(&format!("<{}", headings.join(" | ")), lines));
-        match more {
-            0 => {}
-            _ => text += &format!("{} in sense.csv\n", counted(more as u64, "more row")),
-        }
+        let more = if_any(all - lines.len(), |n| {
+            format!("{} in sense.csv\n", counted(n as u64, "more row"))
+        });
+        text += &format!("\n{}{more}", table_of(&format!("<{}", headings.join(" | ")), lines));
         text += &format!("\n{}\n", about_noise(found));
     }
     if !found.choice.is_empty() {
@@ -42,10 +39,8 @@ pub fn describe(found: &Sensed) -> String {
         let names = error::listed(found.left_alone.iter().map(String::as_str));
         text += &format!("columns left alone: {names}\n");
     }
-    for warning in found.warnings.iter().filter(|one| !found.doubts.contains(one)) {
-        text += &format!("warning: {warning}\n");
-    }
-    text
+    let others = found.warnings.iter().filter(|one| !found.doubts.contains(one));
+    text + &warnings(others)
 }
 
 /// Observability of the loads from the pressures of the bladders.
@@ -77,13 +72,16 @@ pub fn about_sight(found: &Sensed) -> String {
     if determined.len() > MANY {
         text += &format!("  determined individually: {}\n", listed(&determined));
     } else {
-        text.extend(determined.iter().filter_map(|a| {
-            let error = significant(a.error_per_pa?, 3);
-            Some(format!(
-                "  {} is determined: its standard error is {error} {} per Pa of noise\n",
-                a.name, a.unit
-            ))
-        }));
+        for Unknown {
+            name,
+            unit,
+            error_per_pa,
+            ..
+        } in determined
+        {
+            let error = significant(error_per_pa.unwrap_or_default(), 3);
+            text += &format!("  {name} is determined: its standard error is {error} {unit} per Pa of noise\n");
+        }
     }
     let lost: Vec<&Unknown> = found.amplitudes.iter().filter(|a| !alone(a)).collect();
     if !lost.is_empty() {
@@ -99,10 +97,8 @@ pub fn about_sight(found: &Sensed) -> String {
         );
     } else {
         for one in together {
-            text += &format!(
-                "  determined only together: {} [{}], numbers in SI units\n",
-                one.name, one.unit
-            );
+            let (name, unit) = (&one.name, &one.unit);
+            text += &format!("  determined only together: {name} [{unit}], numbers in SI units\n");
         }
     }
     if blind.len() > MANY {
@@ -116,10 +112,8 @@ pub fn about_sight(found: &Sensed) -> String {
     }
     for change in blind {
         let parts = change.iter().zip(&found.amplitudes).filter(|(c, _)| **c != 0.0);
-        let parts: Vec<String> = parts
-            .map(|(c, a)| format!("{} {} of {}", significant(*c, 4), a.unit, a.name))
-            .collect();
-        text += &format!("  not observable: {}\n", parts.join(" with "));
+        let parts = parts.map(|(c, a)| format!("{} {} of {}", significant(*c, 4), a.unit, a.name));
+        text += &format!("  not observable: {}\n", joined(parts, " with "));
     }
     text
 }
@@ -141,7 +135,7 @@ fn listed(all: &[&Unknown]) -> String {
         _ => (None, all.to_vec()),
     };
     let names = rest.into_iter().map(|a| a.name.clone());
-    names.chain(from_places).collect::<Vec<_>>().join(", ")
+    joined(names.chain(from_places), ", ")
 }
 
 /// A load with the half width of its band.
@@ -277,14 +271,12 @@ pub fn about_noise(found: &Sensed) -> String {
     }
     if let Some(over_time) = &found.over_time {
         let determined = found.amplitudes.iter().zip(&over_time.determined);
-        let determined: Vec<String> = determined
-            .map(|(a, count)| format!("{} of {}", significant(*count, 3), a.name))
-            .collect();
+        let determined = determined.map(|(a, count)| format!("{} of {}", significant(*count, 3), a.name));
         text += &format!(
             "\nover time: {} values of each load, one every {} s, joined by a smooth curve; the pressures determine {}; {}",
             over_time.knots,
             significant(over_time.every_s, 3),
-            determined.join(", "),
+            joined(determined, ", "),
             counted(u64::from(over_time.runs), "run")
         );
     } else if found.rows.iter().any(|row| row.t_s.is_some()) {
@@ -295,31 +287,23 @@ pub fn about_noise(found: &Sensed) -> String {
 
 /// Bladders, separated by spaces.
 pub fn list(bladders: &[i64]) -> String {
-    bladders.iter().map(ToString::to_string).collect::<Vec<_>>().join(" ")
+    joined(bladders.iter().map(ToString::to_string), " ")
 }
 
 /// Table of the best bladders to measure.
 fn sensors(found: &Sensed) -> String {
-    let errors: String = found
-        .amplitudes
-        .iter()
-        .map(|a| format!(" | {} [{}]", a.name, a.unit))
-        .collect();
-    let mut lines = vec![];
-    for one in found.choice.iter().take(ROWS) {
+    let amplitudes = found.amplitudes.iter();
+    let errors: String = amplitudes.map(|a| format!(" | {} [{}]", a.name, a.unit)).collect();
+    let error = |e: &Option<f64>| e.map_or("not determined".into(), |e| significant(e, 3));
+    let lines = found.choice.iter().take(ROWS).map(|one| {
         let mut line = vec![one.bladders.len().to_string()];
-        line.extend(
-            one.errors
-                .iter()
-                .map(|e| e.map_or("not determined".into(), |e| significant(e, 3))),
-        );
+        line.extend(one.errors.iter().map(error));
         line.push(list(&one.bladders));
-        lines.push(line);
-    }
-    let more = match found.choice.len().saturating_sub(ROWS) {
-        0 => String::new(),
-        more => format!("{more} more in sensors.csv\n"),
-    };
+        line
+    });
+    let more = if_any(found.choice.len().saturating_sub(ROWS), |n| {
+        format!("{n} more in sensors.csv\n")
+    });
     format!(
         "the best bladders to measure, and the standard errors of the loads for a noise of {} Pa\n{}{more}",
         significant(found.choice_noise_pa, 3),

@@ -33,12 +33,8 @@ pub fn table(study: &Study) -> String {
     );
     let mut lines = vec![];
     let mut unfinished = vec![];
-    for (k, point) in study
-        .points
-        .iter()
-        .enumerate()
-        .filter(|(_, p)| p.trial.role == RunPurpose::Point)
-    {
+    let points = study.points.iter().enumerate();
+    for (k, point) in points.filter(|(_, p)| p.trial.role == RunPurpose::Point) {
         match study.error(k) {
             Some(_) => lines.push(row(study, k)),
             None => unfinished.push(reasons(point)),
@@ -169,7 +165,7 @@ pub fn csv(study: &Study) -> String {
     let mut rows = vec![];
     for point in &study.points {
         let (trial, s, c) = (&point.trial, point.trial.setting, &point.trial.counters);
-        let setting = vec![
+        let mut setting = vec![
             s.cells.to_string(),
             fluid_cells(s.cells).to_string(),
             if s.scheme.is_ida() {
@@ -189,29 +185,22 @@ pub fn csv(study: &Study) -> String {
             number(Some(trial.wall_min_s)),
             number(Some(trial.wall_median_s)),
             trial.repeats.to_string(),
-            c.steps.to_string(),
-            c.residual_evaluations.to_string(),
-            c.jacobian_evaluations.to_string(),
-            c.factorizations.to_string(),
-            c.error_test_failures.to_string(),
-            c.newton_failures.to_string(),
         ];
+        let evaluations = [
+            c.steps,
+            c.residual_evaluations,
+            c.jacobian_evaluations,
+            c.factorizations,
+        ];
+        let failures = [c.error_test_failures, c.newton_failures];
+        setting.extend(evaluations.iter().chain(&failures).map(u64::to_string));
         let Some(errors) = &point.errors else {
             rows.push([setting, vec![String::new(); 12]].concat());
             continue;
         };
         for (e, m) in errors.iter().zip(&study.measures) {
-            let own = m.own();
-            let numbers = [
-                e.temporal.map(|n| n.l2),
-                e.temporal.map(|n| n.max),
-                e.spatial.map(|n| n.l2),
-                e.spatial.map(|n| n.max),
-                Some(e.total.l2),
-                Some(e.total.max),
-                Some(own.l2),
-                Some(own.max),
-            ];
+            let norms = [e.temporal, e.spatial, Some(e.total), Some(m.own())];
+            let numbers = norms.into_iter().flat_map(|n| [n.map(|n| n.l2), n.map(|n| n.max)]);
             let mut row = setting.clone();
             row.extend([m.name.clone(), format!("{:?}", m.kind).to_lowercase()]);
             row.extend(numbers.map(number));

@@ -1,6 +1,7 @@
 //! The sentence at the end of a study.
 
 use crate::discrete::quantities::Observable;
+use crate::output::columns::if_any;
 use crate::output::numbers::{counted, significant, trimmed};
 use crate::study::accuracy::{Scheme, Study, StudySetting};
 
@@ -58,18 +59,10 @@ pub fn sentence(study: &Study) -> String {
 }
 
 fn price(seconds: f64, setting: StudySetting, schemes: &[Scheme]) -> String {
-    let scheme = if schemes.len() > 1 {
-        format!(", {}", setting.scheme)
-    } else {
-        String::new()
-    };
-    let cells = if setting.cells == 1 { "cell" } else { "cells" };
-    format!(
-        "{} s ({} {cells}{scheme}, rtol {:e})",
-        significant(seconds, 2),
-        setting.cells,
-        setting.rtol
-    )
+    let StudySetting { scheme, cells, rtol } = setting;
+    let scheme = if_any(schemes.len().saturating_sub(1), |_| format!(", {scheme}"));
+    let (seconds, cells) = (significant(seconds, 2), counted(cells as u64, "cell"));
+    format!("{seconds} s ({cells}{scheme}, rtol {rtol:e})")
 }
 
 /// Sentence about the tolerance above which cost increases most: on a line with an answer, else on any line, which is then named.
@@ -88,10 +81,10 @@ fn foot(study: &Study) -> Option<String> {
         .or_else(|| worst(false).map(|f| (f, false)))?;
     let setting = study.points[foot.cheapest].trial.setting;
     let factor = significant(foot.factor, 2);
-    let with = if answering {
-        String::new()
-    } else {
-        format!(" with {} and {}", counted(setting.cells as u64, "cell"), setting.scheme)
+    let cells = counted(setting.cells as u64, "cell");
+    let with = match answering {
+        true => String::new(),
+        false => format!(" with {cells} and {}", setting.scheme),
     };
     Some(format!(
         "looser than rtol {:e} costs more, not less{with} (up to {factor} times)",

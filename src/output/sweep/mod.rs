@@ -1,28 +1,26 @@
 //! Output files of many designs.
 //!
 //! ```text
-//! journal         designs.jsonl: one line per design, safe on disk as soon as it is computed
-//! table           sweep.csv: one row per design
-//! arrays          sweep.npz: the same numbers
-//! exchanged       modes that change places between neighboring designs
-//! warning_counts  warnings of designs, counted
-//! pictures        sweep.svg, map.svg
-//! text            text of many designs
-//! script          jobs for Slurm and GNU parallel
-//! shards          joins shards
+//! journal   designs.jsonl: one line per design, safe on disk as soon as it is computed
+//! table     sweep.csv: one row per design
+//! arrays    sweep.npz: the same numbers
+//! warnings  modes that change places between neighboring designs; warnings of designs, counted
+//! pictures  sweep.svg, map.svg
+//! text      text of many designs
+//! script    jobs for Slurm and GNU parallel
+//! shards    joins shards
 //! ```
 //!
 //! Rows are read from the journal one by one, in the order of their numbers. Memory contains only the offset of each line.
 
 pub mod arrays;
-pub mod exchanged;
 pub mod journal;
 pub mod pictures;
 pub mod script;
 pub mod shards;
 pub mod table;
 pub mod text;
-pub mod warning_counts;
+mod warnings;
 
 use std::fs;
 use std::io::Write as _;
@@ -41,6 +39,7 @@ pub use crate::study::sweep::unit::unit;
 
 pub use super::journal::Journal;
 pub use journal::JournalSummary;
+pub use warnings::warnings;
 
 /// The requested sweep; exists from the beginning.
 pub const PLAN: &str = "plan.json";
@@ -175,16 +174,6 @@ pub fn write(
         folder.remove(REPORT)?;
     }
     folder.secure()
-}
-
-/// Warnings about modes that change places between designs, and counted warnings of the designs.
-///
-/// # Errors
-/// The journal cannot be read.
-pub fn warnings(plan: &SweepPlan, survey: &JournalSummary) -> Result<Vec<String>> {
-    let mut all = exchanged::warnings(&exchanged::find_exchanges(plan, survey)?);
-    all.extend(warning_counts::count_warnings(survey)?);
-    Ok(all)
 }
 
 /// Description of the table of these rows, without warnings.

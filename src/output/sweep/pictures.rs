@@ -2,7 +2,8 @@
 
 use std::collections::BTreeMap;
 
-use super::{JournalSummary, exchanged, numeric, table, unit};
+use super::warnings::find_exchanges;
+use super::{JournalSummary, numeric, table, unit};
 use crate::case::readable;
 use crate::error::Result;
 use crate::output::plot::designs::{self, DesignNumbers, Drawn};
@@ -40,22 +41,12 @@ pub fn draw(plan: &SweepPlan, survey: &JournalSummary) -> Result<Vec<(&'static s
         return Ok(vec![]);
     }
     let many = data.varied.len() + usize::from(plan.cases.len() > 1);
-    let all = [
-        (
-            "sweep.svg",
-            (data.varied.len() == 1).then(|| designs::along(&data)).flatten(),
-        ),
-        (
-            "map.svg",
-            (many == 2 && data.varied.len() == 2)
-                .then(|| designs::over_two(&data))
-                .flatten(),
-        ),
-    ];
-    Ok(all
-        .into_iter()
-        .filter_map(|(name, picture)| Some((name, picture?)))
-        .collect())
+    let picture = match data.varied.len() {
+        1 => designs::along(&data).map(|text| ("sweep.svg", text)),
+        2 if many == 2 => designs::over_two(&data).map(|text| ("map.svg", text)),
+        _ => None,
+    };
+    Ok(picture.into_iter().collect())
 }
 
 /// Data of the designs that finished, thinned to those drawn.
@@ -134,7 +125,7 @@ fn data(plan: &SweepPlan, survey: &JournalSummary) -> Result<Drawn> {
             })
             .collect(),
         joined: numbered.iter().all(|&k| plan.listed(k)),
-        apart: exchanged::find_exchanges(plan, survey)?,
+        apart: find_exchanges(plan, survey)?,
         designs: numbers,
         of,
         figures,

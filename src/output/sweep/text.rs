@@ -4,6 +4,7 @@ use std::fmt::Write as _;
 
 use super::JournalSummary;
 use crate::error::Result;
+use crate::output::columns::bracketed;
 use crate::output::numbers::{count, counted};
 use crate::results::sweep::Sweep;
 use crate::run::summary::Status;
@@ -31,15 +32,12 @@ pub fn describe(sweep: &Sweep, survey: &JournalSummary) -> Result<String> {
         plan.command.word()
     );
     let pointers = plan.pointers();
-    let mut first = vec![];
+    let (mut first, mut short) = (vec![], 0);
     survey.each(|row| {
+        short += usize::from(row.found.figure(ACCURACY) == Some(0.0));
         if row.found.status != Status::Finished && first.len() < LISTED {
             let values = pairs(&pointers, &row.values);
-            let place = if values.is_empty() {
-                values
-            } else {
-                format!(" ({values})")
-            };
+            let place = bracketed((!values.is_empty()).then_some(values), "");
             let why = row.found.reason.unwrap_or_default();
             first.push(format!(
                 "  design {}{place}: {}: {why}\n",
@@ -50,11 +48,6 @@ pub fn describe(sweep: &Sweep, survey: &JournalSummary) -> Result<String> {
         Ok(())
     })?;
     text += &first.concat();
-    let mut short = 0;
-    survey.each(|row| {
-        short += usize::from(row.found.figure(ACCURACY) == Some(0.0));
-        Ok(())
-    })?;
     if short > 0 {
         let verb = if short == 1 { "does" } else { "do" };
         let _ = writeln!(
@@ -63,12 +56,7 @@ pub fn describe(sweep: &Sweep, survey: &JournalSummary) -> Result<String> {
             several(short)
         );
     }
-    let others: usize = survey
-        .statuses
-        .iter()
-        .filter(|(status, _)| **status != Status::Finished)
-        .map(|(_, n)| n)
-        .sum();
+    let others = rows - survey.statuses.get(&Status::Finished).unwrap_or(&0);
     if others > first.len() {
         let _ = writeln!(
             text,

@@ -114,6 +114,9 @@ impl RepeatingCell {
     }
 }
 
+/// Entries of A and B by row, cell and column.
+type EntriesByPlace = BTreeMap<(usize, usize, usize), [f64; 2]>;
+
 /// Cells of unknowns, counted from the first one in the middle, and places in them.
 struct Places {
     cells: BTreeMap<i64, Vec<usize>>,
@@ -147,7 +150,7 @@ impl Places {
             }
         }
         loop {
-            let connected = |unknown: usize| -> Option<(i64, Vec<(i64, usize)>, usize)> {
+            let connected = |unknown: usize| {
                 let mut all: Vec<(i64, usize)> = beside[unknown].iter().filter_map(|k| places.of[*k]).collect();
                 all.sort_unstable();
                 all.dedup();
@@ -177,12 +180,8 @@ impl Places {
         self.cells.get(&cell).map_or(0, Vec::len)
     }
 
-    /// Entries of the equations of a cell by row, cell and column, or the reason why they reach beyond the adjacent cells.
-    fn entries(
-        &self,
-        about: &Linearised,
-        own: i64,
-    ) -> std::result::Result<BTreeMap<(usize, usize, usize), [f64; 2]>, String> {
+    /// Entries of the equations of a cell, or the reason why they reach beyond the adjacent cells.
+    fn entries(&self, about: &Linearised, own: i64) -> std::result::Result<EntriesByPlace, String> {
         let (pencil, layout) = (about.pencil(), &about.system().layout);
         let mut all = BTreeMap::new();
         for column in 0..layout.len {

@@ -17,6 +17,9 @@ const FINITE: f64 = 1e-12;
 const STEPS: usize = 4;
 const SETTLED: f64 = 1e-3;
 
+/// A factor λ with the unknowns of the cell.
+pub type FactorPair = (Complex<f64>, Vec<Complex<f64>>);
+
 /// Let r be the equations that contain unknowns of other cells, and w what these contribute to them. With `G = T_0⁻¹`
 ///
 /// ```text
@@ -73,7 +76,7 @@ impl Condensed {
     /// Factors λ of the finite waves, with all unknowns of the cell. None if the equations are singular for every λ.
     ///
     /// With `θ = 1/(λ - σ)` the polynomial is `θ² P(σ) + θ P'(σ) + (T_+ G)_rr`, whose companion matrix has an ordinary eigenvalue problem.
-    pub fn waves(&self) -> Option<Vec<(Complex<f64>, Vec<Complex<f64>>)>> {
+    pub fn waves(&self) -> Option<Vec<FactorPair>> {
         let n = self.answers.ncols();
         let (shift, companion) = SHIFTS.iter().find_map(|&shift| {
             let [value, derivative] = self.at(shift);

@@ -221,7 +221,7 @@ impl BlochPencil {
             let next = next.column(0);
             let place = next.icamax_full().0;
             let by = x[place] / next[place];
-            if !(by.norm() < 1e-3 * (wave.s.norm() + near)) {
+            if by.norm().is_nan() || by.norm() > 1e-3 * (wave.s.norm() + near) {
                 return;
             }
             wave.s -= by;

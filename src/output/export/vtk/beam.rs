@@ -4,22 +4,15 @@ use super::curve::{Curve, SectionPosition};
 use super::cutout::Cutout;
 use super::surface::{Data, Surface};
 
-/// Fields of the beam at an instant; vectors have an axial and a transverse part.
-pub(super) struct Fields<'a> {
-    /// Displacement at the nodes [m].
-    pub u: [&'a [f64]; 2],
-    /// Velocity at the nodes [m/s].
-    pub v: [&'a [f64]; 2],
-    /// Curvature at the nodes [1/m].
-    pub curvature: &'a [f64],
-    /// Moment at the nodes [N m].
-    pub moment: &'a [f64],
-    /// Normal force in the cells [N].
-    pub force: &'a [f64],
-}
-
-/// Surface of the beam. Points have the data of their section's center, quadrilaterals those of their beam cell.
-pub(super) fn surface(cutout: &Cutout, curve: &Curve, sections: &[SectionPosition], fields: &Fields) -> Surface {
+/// Surface of the beam. Points have the data of their section's center, quadrilaterals those of their beam cell; `field` returns a recorded
+/// field at the instant.
+pub(super) fn surface<'a>(
+    cutout: &Cutout,
+    curve: &Curve,
+    sections: &[SectionPosition],
+    field: &dyn Fn(&str) -> &'a [f64],
+) -> Surface {
+    let force = field("normal_force_n");
     let heights = cutout.heights();
     let m = heights.len();
     let mut out = Surface::default();
@@ -38,20 +31,14 @@ pub(super) fn surface(cutout: &Cutout, curve: &Curve, sections: &[SectionPositio
     for (k, pair) in sections.windows(2).enumerate() {
         let open = cutout.beside_bladder(pair[0].theta, pair[1].theta);
         // The sides are divided at the edges of the rows; every second strip is a row.
+        let mut face = |corners: [usize; 4]| out.quads.push(corners);
         for i in (0..m - 1).filter(|i| !(open && i % 2 == 1)) {
-            out.quads
-                .push([at(k, 1, i), at(k + 1, 1, i), at(k + 1, 1, i + 1), at(k, 1, i + 1)]);
-            out.quads
-                .push([at(k, 0, i), at(k, 0, i + 1), at(k + 1, 0, i + 1), at(k + 1, 0, i)]);
+            face([at(k, 1, i), at(k + 1, 1, i), at(k + 1, 1, i + 1), at(k, 1, i + 1)]);
+            face([at(k, 0, i), at(k, 0, i + 1), at(k + 1, 0, i + 1), at(k + 1, 0, i)]);
         }
-        out.quads
-            .push([at(k, 0, 0), at(k + 1, 0, 0), at(k + 1, 1, 0), at(k, 1, 0)]);
-        out.quads.push([
-            at(k, 0, m - 1),
-            at(k, 1, m - 1),
-            at(k + 1, 1, m - 1),
-            at(k + 1, 0, m - 1),
-        ]);
+        let top = m - 1;
+        face([at(k, 0, 0), at(k + 1, 0, 0), at(k + 1, 1, 0), at(k, 1, 0)]);
+        face([at(k, 0, top), at(k, 1, top), at(k + 1, 1, top), at(k + 1, 0, top)]);
         cells.resize(out.quads.len(), curve.cell(pair[0].theta, pair[1].theta));
     }
     let last = sections.len() - 1;
@@ -60,35 +47,30 @@ pub(super) fn surface(cutout: &Cutout, curve: &Curve, sections: &[SectionPositio
     cells.resize(out.quads.len(), 0);
     out.quads
         .extend((0..m - 1).map(|i| [at(last, 0, i), at(last, 0, i + 1), at(last, 1, i + 1), at(last, 1, i)]));
-    cells.resize(out.quads.len(), fields.force.len() - 1);
+    cells.resize(out.quads.len(), force.len() - 1);
 
     reveals(&mut out, cutout, sections, &mut stations, |from, to| {
         cells.push(curve.cell(from, to))
     });
 
-    let each = |field: &[f64]| -> Vec<f64> {
-        let at_station: Vec<f64> = sections.iter().map(|s| curve.interpolate(s.theta, field)).collect();
+    let each = |name: &str| -> Vec<f64> {
+        let at_station = sections.iter().map(|s| curve.interpolate(s.theta, field(name)));
+        let at_station: Vec<f64> = at_station.collect();
         stations.iter().map(|&k| at_station[k]).collect()
     };
-    let vector = |parts: [&[f64]; 2]| -> Vec<f64> {
-        let (axial, transverse) = (each(parts[0]), each(parts[1]));
-        axial
-            .into_iter()
-            .zip(transverse)
-            .flat_map(|(a, t)| [a, t, 0.0])
-            .collect()
+    let vector = |axial: &str, transverse: &str| -> Vec<f64> {
+        let both = each(axial).into_iter().zip(each(transverse));
+        both.flat_map(|(a, t)| [a, t, 0.0]).collect()
     };
     out.of_points = vec![
-        Data::vector("u_m", vector(fields.u)),
-        Data::vector("v_m_s", vector(fields.v)),
-        Data::scalar("curvature_1_m", each(fields.curvature)),
-        Data::scalar("moment_n_m", each(fields.moment)),
+        Data::vector("u_m", vector("u3_m", "u1_m")),
+        Data::vector("v_m_s", vector("v3_m_s", "v1_m_s")),
+        Data::scalar("curvature_1_m", each("curvature_1_m")),
+        Data::scalar("moment_n_m", each("moment_n_m")),
         Data::scalar("theta_m", stations.iter().map(|&k| sections[k].theta).collect()),
     ];
-    out.of_cells = vec![Data::scalar(
-        "normal_force_n",
-        cells.iter().map(|&c| fields.force[c]).collect(),
-    )];
+    let forces = cells.iter().map(|&c| force[c]).collect();
+    out.of_cells = vec![Data::scalar("normal_force_n", forces)];
     out
 }
 

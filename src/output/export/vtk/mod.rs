@@ -145,14 +145,7 @@ impl<'a> Scene<'a> {
         let angles = row("section_angle_rad");
         let curve = Curve::new(theta, row("u1_m"), row("u3_m"), row("curvature_1_m"), angles);
         let sections = curve.sections(&self.stations);
-        let fields = beam::Fields {
-            u: [row("u3_m"), row("u1_m")],
-            v: [row("v3_m_s"), row("v1_m_s")],
-            curvature: row("curvature_1_m"),
-            moment: row("moment_n_m"),
-            force: row("normal_force_n"),
-        };
-        let mut parts = vec![beam::surface(&self.cutout, &curve, &sections, &fields)];
+        let mut parts = vec![beam::surface(&self.cutout, &curve, &sections, &row)];
         if let Some((layout, tubes)) = &self.wet {
             let (pressure, area) = (row("pressure_pa"), row("area_change_m2"));
             parts.push(bladders::surface(&self.cutout, layout, &sections, pressure, area));

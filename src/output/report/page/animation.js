@@ -79,36 +79,22 @@ function showAnimation(host, scene, motion, clock) {
   const shape = (f, w) => {
     const n = motion.nodes;
     const g = Math.min(f + 1, motion.frames - 1);
-    const [u1, u3] = [new Float64Array(n), new Float64Array(n)];
-    const angle = motion.angle ? new Float64Array(n) : null;
     const [s, t] = [shift(f), shift(g)];
-    for (let k = 0; k < n; k++) {
-      u1[k] = (motion.u1[f * n + k] - s[0]) * (1 - w) + (motion.u1[g * n + k] - t[0]) * w;
-      u3[k] = (motion.u3[f * n + k] - s[1]) * (1 - w) + (motion.u3[g * n + k] - t[1]) * w;
-      if (angle) angle[k] = motion.angle[f * n + k] * (1 - w) + motion.angle[g * n + k] * w;
-    }
-    return curveOf(motion.theta, u1, u3, factor, angle);
+    const mix = (v, from, to) => Float64Array.from({ length: n }, (_, k) => (v[f * n + k] - from) * (1 - w) + (v[g * n + k] - to) * w);
+    return curveOf(motion.theta, mix(motion.u1, s[0], t[0]), mix(motion.u3, s[1], t[1]), factor, motion.angle ? mix(motion.angle, 0, 0) : null);
   };
   const prepare = () => {
     const bounds = { x0: 0, x1: scene.length, y0: 0, y1: 0 };
     for (let f = 0; f < motion.frames; f++) {
       const [s1, s3] = shift(f);
       for (let k = 0; k < motion.nodes; k++) {
-        const x = motion.theta[k] + (motion.u3[f * motion.nodes + k] - s3) * factor.along;
-        const y = (motion.u1[f * motion.nodes + k] - s1) * factor.across;
-        if (x < bounds.x0) bounds.x0 = x;
-        if (x > bounds.x1) bounds.x1 = x;
-        if (y < bounds.y0) bounds.y0 = y;
-        if (y > bounds.y1) bounds.y1 = y;
+        widen(bounds, motion.theta[k] + (motion.u3[f * motion.nodes + k] - s3) * factor.along, (motion.u1[f * motion.nodes + k] - s1) * factor.across);
       }
     }
     // A disc is seen as a whole unless it is larger than the beam.
     for (const { center, radius } of scene.obstacles || []) {
       if (!center || factor.along !== 1 || radius > scene.length || Math.hypot(...center) > 3 * scene.length) continue;
-      bounds.x0 = Math.min(bounds.x0, center[1] - radius);
-      bounds.x1 = Math.max(bounds.x1, center[1] + radius);
-      bounds.y0 = Math.min(bounds.y0, (center[0] - radius) * factor.across);
-      bounds.y1 = Math.max(bounds.y1, (center[0] + radius) * factor.across);
+      for (const side of [-1, 1]) widen(bounds, center[1] + side * radius, (center[0] + side * radius) * factor.across);
     }
     bounds.y0 -= scene.height * 0.8;
     bounds.y1 += scene.height * 0.8;
@@ -160,7 +146,6 @@ function showAnimation(host, scene, motion, clock) {
   host.append(canvas);
   if (scale) host.append(colourBar(scale.limit, scale.most, "Pa"));
   host.append(controls, note);
-  redrawn(again);
+  drawn(again);
   clock.onTick(paint);
-  again();
 }

@@ -126,10 +126,11 @@ function css(name) {
   return cssKept.get(name);
 }
 
-// Figures draw themselves anew when the theme or the width of the page changes.
+/** Draws a figure, now and whenever the theme or the width of the page changes. */
 const redraws = [];
-function redrawn(draw) {
+function drawn(draw) {
   redraws.push(draw);
+  draw();
 }
 function redraw() {
   cssKept.clear();
@@ -155,6 +156,11 @@ function section(id, title, lead, into = document.getElementById("main")) {
   into.append(body);
   contents.push([id, title]);
   return body;
+}
+
+/** The section of charts and pictures. */
+function answerSection() {
+  return document.getElementById("answer") || section("answer", "The picture", null);
 }
 
 /** A card with a title and a sentence below. */

@@ -125,6 +125,14 @@ function refined(points, segment) {
   return out;
 }
 
+/** Widens bounds to a point. */
+function widen(bounds, x, y) {
+  if (x < bounds.x0) bounds.x0 = x;
+  if (x > bounds.x1) bounds.x1 = x;
+  if (y < bounds.y0) bounds.y0 = y;
+  if (y > bounds.y1) bounds.y1 = y;
+}
+
 /** A view that holds all of [x0, x1] × [y0, y1], to scale, in a given width; higher than wide it never is. */
 function viewOf(width, bounds, most) {
   const margin = 20;

@@ -27,7 +27,7 @@ function showMarks(part) {
   const slot = el("div", { class: "chart", tabindex: "0", role: "group", "data-keys": "" });
   const readout = el("div", { class: "readout dim", "aria-live": "polite", text: "Point at a mark, or go through them with the arrow keys." });
   const points = () => part.series.flatMap((s, k) => (off.has(k) ? [] : s.points.map(([x, y, words]) => ({ x: Math.log10(x), y: Math.log10(y), words, series: k }))));
-  let [drawn, ring, at] = [null, null, -1];
+  let [plot, ring, at] = [null, null, -1];
   const mark = (k) => {
     const all = points();
     if (!all.length) return;
@@ -35,8 +35,8 @@ function showMarks(part) {
     const one = all[at];
     readout.textContent = one.words;
     readout.classList.remove("dim");
-    ring.setAttribute("cx", drawn.px(one.x));
-    ring.setAttribute("cy", drawn.py(one.y));
+    ring.setAttribute("cx", plot.px(one.x));
+    ring.setAttribute("cy", plot.py(one.y));
     ring.style.display = "";
   };
   const draw = () => {
@@ -53,10 +53,10 @@ function showMarks(part) {
     const axis = (a, low, high, count) => ({ low, high, unit: "", name: a.name, marks: logMarks(low, high, count, a.unit === "1" ? "" : a.unit) });
     const label = `${part.title}: ${part.y.name} over ${part.x.name}, ${all.length} marks`;
     slot.setAttribute("aria-label", `${label}. Arrow keys go through them.`);
-    drawn = chart(width, height, axis(part.x, x0, x1, Math.floor(width / 90)), axis(part.y, y0, y1, 6), label);
+    plot = chart(width, height, axis(part.x, x0, x1, Math.floor(width / 90)), axis(part.y, y0, y1, 6), label);
     const limit = part.limit && part.limit.at > 0 ? Math.min(Math.log10(part.limit.at), x1) : -Infinity;
-    if (limit > x0) drawn.area.append(svg("rect", { x: drawn.px(x0), y: 0, width: drawn.px(limit) - drawn.px(x0), height, style: `fill:${css("--track")}` }));
-    const path = (list, style, dash) => drawn.area.append(svg("path", { d: linePath(list.length, (i) => [drawn.px(list[i].x), drawn.py(list[i].y)]), style: `fill:none;${style}`, "stroke-dasharray": dash || null }));
+    if (limit > x0) plot.area.append(svg("rect", { x: plot.px(x0), y: 0, width: plot.px(limit) - plot.px(x0), height, style: `fill:${css("--track")}` }));
+    const path = (list, style, dash) => plot.area.append(svg("path", { d: linePath(list.length, (i) => [plot.px(list[i].x), plot.py(list[i].y)]), style: `fill:none;${style}`, "stroke-dasharray": dash || null }));
     const front = (part.front || []).map(([x, y]) => ({ x: Math.log10(x), y: Math.log10(y) }));
     path(front, `stroke:${css("--line")};stroke-width:9;stroke-linejoin:round`);
     part.series.forEach((s, k) => {
@@ -64,17 +64,17 @@ function showMarks(part) {
       const own = all.filter((p) => p.series === k);
       const colour = named(s.colour);
       path(own, `stroke:${colour};stroke-width:1.5`, s.dash);
-      own.forEach((p, i) => drawn.area.append(svg("circle", { cx: drawn.px(p.x), cy: drawn.py(p.y), r: 4.5, style: `stroke:${colour};stroke-width:2;fill:${s.points[i][3] ? colour : css("--card")}` })));
+      own.forEach((p, i) => plot.area.append(svg("circle", { cx: plot.px(p.x), cy: plot.py(p.y), r: 4.5, style: `stroke:${colour};stroke-width:2;fill:${s.points[i][3] ? colour : css("--card")}` })));
     });
     ring = svg("circle", { r: 9, style: `fill:none;stroke:${css("--ink")};stroke-width:1.6;display:none` });
-    drawn.area.append(ring);
-    slot.replaceChildren(drawn.node);
+    plot.area.append(ring);
+    slot.replaceChildren(plot.node);
     if (at >= 0) mark(Math.min(at, all.length - 1));
   };
   slot.addEventListener("pointermove", (event) => {
-    const box = drawn.node.getBoundingClientRect();
+    const box = plot.node.getBoundingClientRect();
     const [x, y] = [event.clientX - box.left, event.clientY - box.top];
-    const far = points().map((p) => Math.hypot(drawn.px(p.x) - x, drawn.py(p.y) - y));
+    const far = points().map((p) => Math.hypot(plot.px(p.x) - x, plot.py(p.y) - y));
     const near = far.indexOf(Math.min(...far));
     if (far[near] < 40) mark(near);
   });
@@ -86,9 +86,7 @@ function showMarks(part) {
   });
   const chips = part.series.map((s, k) => {
     const button = el("button", { type: "button", "aria-pressed": true }, el("i", { class: "swatch" }), s.name);
-    const paint = () => (button.firstChild.style.background = named(s.colour));
-    redrawn(paint);
-    paint();
+    drawn(() => (button.firstChild.style.background = named(s.colour)));
     button.addEventListener("click", () => {
       if (!off.delete(k)) off.add(k);
       button.setAttribute("aria-pressed", !off.has(k));
@@ -136,38 +134,21 @@ function showOverlay(part) {
   const body = section("histories", "Over time", "The runs over each other; quantities are chosen by their buttons.");
   const times = floats(part.times);
   const all = part.quantities.map((q) => ({ ...q, runs: q.values.map(floats) }));
-  const chosen = new Set(all.filter((q) => q.usual).map((q) => q.name));
-  if (!chosen.size && all.length) chosen.add(all[0].name);
-  const slot = el("div");
-  const group = makePanels(slot, { times, time: () => times[0] });
-  const paint = () => {
-    group.clear();
-    for (const q of all.filter((one) => chosen.has(one.name))) {
+  const choice = columnChoice(all);
+  const group = makePanels(times, null, () => {
+    for (const q of choice.chosen()) {
       group.add(q.runs.map((values, k) => ({ label: part.runs[k], unit: q.unit, values, colour: named(k), dash: DASHES[Math.floor(k / 8) % DASHES.length] })), 230, q.label);
     }
-    setTimeout(group.mark, 0);
-  };
-  const chips = all.map((q) => {
-    const button = el("button", { type: "button", text: q.label, title: q.about, "aria-pressed": chosen.has(q.name), "data-column": q.name });
-    button.addEventListener("click", () => {
-      if (!chosen.delete(q.name)) chosen.add(q.name);
-      button.setAttribute("aria-pressed", chosen.has(q.name));
-      paint();
-    });
-    return button;
   });
-  body.append(figure(null, part.note, el("div", { class: "chips", role: "group", "aria-label": "Quantities" }, chips), zoomTools(group), slot));
-  redrawn(paint);
-  paint();
+  const chips = all.map((q) => choice.chip(q, group.paint));
+  body.append(figure(null, part.note, el("div", { class: "chips", role: "group", "aria-label": "Quantities" }, chips), zoomTools(group), group.slot));
+  group.begin();
 }
 
 function showCharts() {
   for (const part of data.charts || []) {
     const { card, draw } = part.kind === "bars" ? showBars(part) : showMarks(part);
-    if (!document.getElementById("answer")) section("answer", "The picture", null);
-    document.getElementById("answer").append(card);
-    if (!draw) continue;
-    redrawn(draw);
-    draw();
+    answerSection().append(card);
+    if (draw) drawn(draw);
   }
 }

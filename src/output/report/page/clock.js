@@ -68,10 +68,19 @@ function icon(name) {
   return svg("svg", { viewBox: "0 0 16 16", width: 14, height: 14, "aria-hidden": "true" }, svg("path", { d: ICONS[name] }));
 }
 
+/** Lets a button show what it does: pause if something plays, else play. */
+function showPlaying(button, playing) {
+  const label = playing ? "Pause" : "Play";
+  if (button.getAttribute("aria-label") === label) return button;
+  button.replaceChildren(icon(playing ? "pause" : "play"));
+  button.setAttribute("aria-label", label);
+  return button;
+}
+
 /** Buttons, slider, speed; `numbers(clock)` gives [label, text] pairs to be read along. */
 function player(clock, numbers) {
   const last = clock.times.length - 1;
-  const play = el("button", { type: "button", class: "main", "aria-label": "Play" }, icon("play"));
+  const play = showPlaying(el("button", { type: "button", class: "main" }), false);
   const step = (by, name, label) =>
     el("button", { type: "button", "aria-label": label, on: { click: () => (clock.play(false), clock.go(clock.index + by)) } }, icon(name));
   const slider = el("input", { type: "range", min: 0, max: last, step: 1, value: 0, "aria-label": "Time", id: "time" });
@@ -92,16 +101,11 @@ function player(clock, numbers) {
     clock.go(index);
   });
   speed.addEventListener("change", () => (clock.rate = Number(speed.value) * clock.natural));
-  let state = null;
   clock.onTick(() => {
     slider.value = clock.index;
     slider.setAttribute("aria-valuetext", quantity(clock.time, "s", 4));
     numbers(clock).forEach(([, text], k) => (spans[k].textContent = text));
-    if (state !== clock.playing) {
-      state = clock.playing;
-      play.replaceChildren(icon(state ? "pause" : "play"));
-      play.setAttribute("aria-label", state ? "Pause" : "Play");
-    }
+    showPlaying(play, clock.playing);
   });
   document.addEventListener("keydown", (event) => {
     if (event.altKey || event.ctrlKey || event.metaKey) return;

@@ -14,13 +14,17 @@ function theme() {
   return document.documentElement.dataset.theme === "dark" ? "dark" : "light";
 }
 
-/** Red, green, blue of a value from -1 to 1, into `out` at `at`. */
-function diverging(value, out, at) {
-  const stops = DIVERGING[theme()];
-  const x = Number.isFinite(value) ? (Math.min(Math.max(value, -1), 1) + 1) * 2 : 2;
+/** Red, green, blue at `s` from 0 to 1 on a scale of five colours, into `out` at `at`. */
+function mixed(stops, s, out, at) {
+  const x = Math.min(Math.max(s, 0), 1) * 4;
   const k = Math.min(Math.floor(x), 3);
   const w = x - k;
   for (let i = 0; i < 3; i++) out[at + i] = stops[k][i] * (1 - w) + stops[k + 1][i] * w;
+}
+
+/** Red, green, blue of a value from -1 to 1, into `out` at `at`. */
+function diverging(value, out, at) {
+  mixed(DIVERGING[theme()], Number.isFinite(value) ? (value + 1) / 2 : 0.5, out, at);
 }
 
 const rgbOut = [0, 0, 0];
@@ -43,10 +47,8 @@ function timeColour(s) {
   const stops = theme() === "dark"
     ? [[90, 150, 240], [130, 175, 225], [190, 190, 195], [240, 160, 130], [255, 110, 95]]
     : [[20, 60, 140], [70, 130, 200], [170, 170, 178], [225, 130, 100], [150, 20, 35]];
-  const x = Math.min(Math.max(s, 0), 1) * 4;
-  const k = Math.min(Math.floor(x), 3);
-  const mix = (i) => Math.round(stops[k][i] * (1 - (x - k)) + stops[k + 1][i] * (x - k));
-  return `rgb(${mix(0)},${mix(1)},${mix(2)})`;
+  mixed(stops, s, rgbOut, 0);
+  return `rgb(${rgbOut.map(Math.round)})`;
 }
 
 /** End of a colour scale: the largest magnitude, or, where few values stand far out, what 98 in 100 stay below. */
@@ -63,9 +65,7 @@ function robustLimit(values) {
 /** Colour bar with the values of its ends. */
 function colourBar(limit, most, unit) {
   const strip = el("i");
-  const paint = () => (strip.style.background = divergingGradient());
-  paint();
-  redrawn(paint);
+  drawn(() => (strip.style.background = divergingGradient()));
   const beyond = most > 1.001 * limit ? ` and beyond (up to ${quantity(most, unit)})` : "";
   return el("div", { class: "bar" }, el("span", { text: quantity(-limit, unit) }), strip, el("span", { text: `${quantity(limit, unit)}${beyond}` }));
 }

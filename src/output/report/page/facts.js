@@ -104,13 +104,11 @@ function showWork() {
   work.sentences.forEach((text) => body.append(el("p", { class: "lead", text })));
   const strip = el("div", { class: "shares", role: "img", "aria-label": work.parts.map((p) => `${p.words} ${Math.round(100 * p.share)} %`).join(", ") });
   const list = el("ul", { class: "legend" });
-  const paint = () => {
+  drawn(() => {
     const tone = (k) => (k === work.parts.length - 1 ? css("--line") : named(k));
     strip.replaceChildren(...work.parts.map((p, k) => el("i", { style: `flex:${Math.max(p.share, 0.001)} 1 0;background:${tone(k)}` })));
     list.replaceChildren(...work.parts.map((p, k) => el("li", {}, svg("svg", { viewBox: "0 0 26 14" }, svg("rect", { width: 26, height: 14, rx: 4, style: `fill:${tone(k)}` })), el("span", {}, el("b", { text: p.words }), ` ${p.text}, ${(100 * p.share).toFixed(0)} %`))));
-  };
-  redrawn(paint);
-  paint();
+  });
   const orders = work.orders || [];
   const most = Math.max(...orders, 1);
   const total = orders.reduce((s, x) => s + x, 0);

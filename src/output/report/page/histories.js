@@ -1,10 +1,10 @@
 // Columns over time: chosen by buttons, zoomed together, read at the cursor.
 
-/** Panels over one time axis that zoom and read together. */
-function makePanels(host, clock, readable) {
-  const group = { key: `g${(makePanels.count = (makePanels.count || 0) + 1)}`, plots: [], range: null, full: null };
-  const times = clock.times;
-  group.full = [times[0], times[times.length - 1]];
+/** Panels over one time axis that zoom and read together, marked at the time of a clock, if any; `fill` adds them. */
+function makePanels(times, clock, fill) {
+  const slot = el("div");
+  const group = { key: `g${(makePanels.count = (makePanels.count || 0) + 1)}`, slot, plots: [], range: null, full: [times[0], times[times.length - 1]] };
+  const time = () => (clock ? clock.time : times[0]);
   group.zoom = (low, high) => {
     const [a, b] = group.full;
     const width = Math.min(Math.max(high - low, (b - a) * 1e-4), b - a);
@@ -17,19 +17,26 @@ function makePanels(host, clock, readable) {
   };
   group.mark = () => {
     for (const { plot, line } of group.plots) {
-      const x = plot.valToPos(clock.time(), "x");
+      const x = plot.valToPos(time(), "x");
       line.style.display = x >= 0 && x <= plot.over.clientWidth ? "" : "none";
       line.style.left = `${x}px`;
       // Without a pointer the figures are those of the clock.
-      if (plot.cursor.left === undefined || plot.cursor.left < 0) plot.setLegend({ idx: frameAt(times, clock.time()) });
+      if (plot.cursor.left === undefined || plot.cursor.left < 0) plot.setLegend({ idx: frameAt(times, time()) });
     }
   };
-  group.clear = () => {
+  group.add = (series, height, title) => group.plots.push(onePanel(slot, group, times, series, height, title));
+  group.paint = () => {
     for (const { plot } of group.plots) plot.destroy();
     group.plots = [];
-    host.replaceChildren();
+    slot.replaceChildren();
+    fill();
+    // Once more when the plots stand: their first picture comes a moment later.
+    setTimeout(group.mark, 0);
   };
-  group.add = (series, height, title) => group.plots.push(onePanel(host, group, times, series, height, title));
+  group.begin = () => {
+    if (clock) clock.onTick(group.mark);
+    drawn(group.paint);
+  };
   return group;
 }
 
@@ -138,44 +145,41 @@ function unpackHistory(history) {
   return { ...history, times: columns[0].values, columns: columns.slice(1) };
 }
 
+/** Columns chosen by buttons, at first the usual ones. */
+function columnChoice(columns) {
+  const names = new Set(columns.filter((c) => c.usual).map((c) => c.name));
+  if (!names.size && columns.length) names.add(columns[0].name);
+  const chip = (c, act) => {
+    const button = el("button", { type: "button", text: c.label, title: c.about, "aria-pressed": names.has(c.name), "data-column": c.name });
+    button.addEventListener("click", () => {
+      if (!names.delete(c.name)) names.add(c.name);
+      button.setAttribute("aria-pressed", names.has(c.name));
+      act();
+    });
+    return button;
+  };
+  return { chip, chosen: () => columns.filter((c) => names.has(c.name)) };
+}
+
 function showHistories(host, history, clock) {
   const all = history.columns.filter((c) => c.values.length && largest(c.values) > 0);
   const zero = history.columns.filter((c) => !all.includes(c)).map((c) => c.label);
-  const chosen = new Set(all.filter((c) => c.usual).map((c) => c.name));
-  if (!chosen.size && all.length) chosen.add(all[0].name);
-  const time = () => (clock ? clock.time : history.times[0]);
-  const slot = el("div");
-  const group = makePanels(slot, { times: history.times, time });
-  const paint = () => {
-    group.clear();
-    const shown = families(all.filter((c) => chosen.has(c.name)));
+  const choice = columnChoice(all);
+  const group = makePanels(history.times, clock, () => {
     let colour = 0;
-    for (const family of shown) {
+    for (const family of families(choice.chosen())) {
       const series = family.map((c) => ({ label: c.label, unit: c.unit, values: c.values, widths: c.widths, colour: named(colour++) }));
       group.add(series, 210, family.length > 1 ? family[0].group.toLowerCase() : family[0].label);
     }
-    // Once more when the plots stand: their first picture comes a moment later.
-    setTimeout(group.mark, 0);
-  };
+  });
   const groups = new Map();
   for (const column of all) groups.set(column.group, [...(groups.get(column.group) || []), column]);
   const chips = [...groups].map(([title, columns]) =>
-    el("div", { class: "chipgroup" }, el("span", { text: title }), el("div", { class: "chips" }, columns.map((column) => {
-      const button = el("button", { type: "button", text: column.label, title: column.about, "aria-pressed": chosen.has(column.name), "data-column": column.name });
-      button.addEventListener("click", () => {
-        if (!chosen.delete(column.name)) chosen.add(column.name);
-        button.setAttribute("aria-pressed", chosen.has(column.name));
-        paint();
-      });
-      return button;
-    }))));
+    el("div", { class: "chipgroup" }, el("span", { text: title }), el("div", { class: "chips" }, columns.map((c) => choice.chip(c, group.paint)))));
   const shade = all.some((c) => c.widths) ? " The shade around a curve is its estimated error." : "";
-  const card = figure(null, `Drag across a picture to look closer; a double click or Escape shows the whole run again. Below each picture stand the figures at the pointer, or at the time of the player.${shade}`, ...chips, zoomTools(group), slot, zero.length ? el("p", { class: "caption", text: `Zero throughout: ${zero.join(", ")}.` }) : null, history.note ? el("p", { class: "caption", text: history.note }) : null);
+  const card = figure(null, `Drag across a picture to look closer; a double click or Escape shows the whole run again. Below each picture stand the figures at the pointer, or at the time of the player.${shade}`, ...chips, zoomTools(group), group.slot, zero.length ? el("p", { class: "caption", text: `Zero throughout: ${zero.join(", ")}.` }) : null, history.note ? el("p", { class: "caption", text: history.note }) : null);
   card.addEventListener("keydown", (event) => event.key === "Escape" && group.zoom(...group.full));
   document.addEventListener("keydown", (event) => event.key === "Escape" && event.target === document.body && group.zoom(...group.full));
   host.append(card);
-  redrawn(paint);
-  if (clock) clock.onTick(group.mark);
-  paint();
-  return group;
+  group.begin();
 }

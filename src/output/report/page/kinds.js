@@ -33,11 +33,9 @@ function showScene(describe) {
   const parts = half ? ` ${scene.bladders.outlines ? "Outlines" : "Rectangles"} are bladders, which lie across the beam; lines are tubes, which join their ends in front and behind.` : "";
   const scale = (thicker) => (note.textContent = `${thicker > 1.01 ? `To scale along the beam; its height is drawn ${shortest(thicker)} times larger.` : "To scale."} Root on the left, tip on the right.${parts}`);
   body.append(card);
-  const drawn = drawScene(scene, host, readout, describe || ((b, layout) => bladderWords(b, layout, scene)), scale);
-  const paint = () => legend.replaceChildren(...sceneWords(scene, drawn.layout).map(([mark, strong, text]) => el("li", {}, mark, el("span", {}, el("b", { text: strong }), ` ${text}`))));
-  redrawn(paint);
-  paint();
-  return drawn;
+  const drawing = drawScene(scene, host, readout, describe || ((b, layout) => bladderWords(b, layout, scene)), scale);
+  drawn(() => legend.replaceChildren(...sceneWords(scene, drawing.layout).map(([mark, strong, text]) => el("li", {}, mark, el("span", {}, el("b", { text: strong }), ` ${text}`)))));
+  return drawing;
 }
 
 function bladderWords(b, layout, scene) {
@@ -108,7 +106,7 @@ function showRun() {
     }
     return text;
   };
-  const drawn = showScene(describe);
+  const drawing = showScene(describe);
   if (clock) {
     const body = section("motion", "Motion", "Press play, drag the slider, or use the space bar and the arrow keys (with Shift: ten steps). Everything below follows the same time.");
     const notes = [];
@@ -130,7 +128,7 @@ function showRun() {
       }
       return all;
     }));
-    clock.onTick(() => !clock.playing && drawn.again());
+    clock.onTick(() => !clock.playing && drawing.again());
     body.append(el("div", { class: "grid2", id: "profiles" }));
     showProfiles(body.lastChild, motion, clock, scene);
     if (motion.frames > 1) {
@@ -171,9 +169,7 @@ function showMany() {
   showCharts();
   for (const part of data.figures || []) {
     const card = pictureCard(part);
-    if (!card) continue;
-    if (!document.getElementById("answer")) section("answer", "The picture", null);
-    document.getElementById("answer").append(card);
+    if (card) answerSection().append(card);
   }
   if (data.overlay) showOverlay(data.overlay);
   if (data.table) section("table", data.table.title, null).append(tableCard({ ...data.table, title: null, name: data.table.title }));

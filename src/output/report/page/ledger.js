@@ -46,16 +46,10 @@ function showEnergies(host, ledger, history, clock) {
   ].filter(([, values]) => values && largest(values) > 0);
   const residual = by(columns.open[0]);
   if (!lines.length) return;
-  const slot = el("div");
-  const group = makePanels(slot, { times: history.times, time: () => (clock ? clock.time : history.times[0]) });
-  const paint = () => {
-    group.clear();
+  const group = makePanels(history.times, clock, () => {
     group.add(lines.map(([label, values], k) => ({ label, values, unit: "J", colour: named(k) })), 280, "energy");
     if (residual) group.add([{ label: residual.label, values: residual.values, unit: "J", colour: css("--bad") }], 150, "residual");
-    setTimeout(group.mark, 0);
-  };
-  host.append(figure("Over time", "What was put in equals what is stored, lost and harvested; the small picture shows by how much it does not.", zoomTools(group), slot));
-  redrawn(paint);
-  if (clock) clock.onTick(group.mark);
-  paint();
+  });
+  host.append(figure("Over time", "What was put in equals what is stored, lost and harvested; the small picture shows by how much it does not.", zoomTools(group), group.slot));
+  group.begin();
 }

@@ -68,7 +68,6 @@ function showMap(host, map, motion, clock) {
     mark();
   };
   const mark = () => (now.style.left = `${(100 * (clock.time - t0)) / (t1 - t0 || 1)}%`);
-  redrawn(paint);
+  drawn(paint);
   clock.onTick(mark);
-  paint();
 }

@@ -20,7 +20,6 @@ function showProfiles(host, motion, clock, scene) {
       about: (most) => `From the first bladder of each network to its last, one network after the other; where one ends the line breaks. Largest in this span: ${quantity(most, "Pa")}.`,
     });
   }
-  // The width of each is known only when all stand.
   const paints = [];
   for (const curve of curves) {
     const slot = el("div");
@@ -31,21 +30,21 @@ function showProfiles(host, motion, clock, scene) {
     curve.range = wide ? inside : all;
     const beyond = wide ? " At other times it may leave the picture." : "";
     host.append(figure(curve.title, curve.about(largest(part)) + beyond, slot));
-    let drawn = null;
+    let plot = null;
     const paint = () => {
       const [low, high] = roomy(curve.range, curve.floor);
-      drawn = chart(Math.max(slot.clientWidth, 260), 264, curve.axis, { low, high, unit: curve.unit, name: curve.name }, curve.title);
-      const line = (f) => linePath(curve.width, (k) => [drawn.px(curve.x[k]), drawn.py(curve.values[f * curve.width + k])], curve.gap);
-      cycle.forEach((f, k) => drawn.area.append(svg("path", { d: line(f), style: `fill:none;stroke:${timeColour(k / Math.max(cycle.length - 1, 1))};stroke-width:1;opacity:0.55` })));
-      drawn.now = svg("path", { class: "present", style: `fill:none;stroke:${css("--ink")};stroke-width:2.4;stroke-linejoin:round` });
-      drawn.area.append(drawn.now);
-      drawn.line = line;
-      slot.replaceChildren(drawn.node);
-      drawn.now.setAttribute("d", line(clock.index));
+      plot = chart(Math.max(slot.clientWidth, 260), 264, curve.axis, { low, high, unit: curve.unit, name: curve.name }, curve.title);
+      const line = (f) => linePath(curve.width, (k) => [plot.px(curve.x[k]), plot.py(curve.values[f * curve.width + k])], curve.gap);
+      cycle.forEach((f, k) => plot.area.append(svg("path", { d: line(f), style: `fill:none;stroke:${timeColour(k / Math.max(cycle.length - 1, 1))};stroke-width:1;opacity:0.55` })));
+      plot.now = svg("path", { class: "present", style: `fill:none;stroke:${css("--ink")};stroke-width:2.4;stroke-linejoin:round` });
+      plot.area.append(plot.now);
+      plot.line = line;
+      slot.replaceChildren(plot.node);
+      plot.now.setAttribute("d", line(clock.index));
     };
-    redrawn(paint);
-    clock.onTick(() => drawn && drawn.now.setAttribute("d", drawn.line(clock.index)));
+    clock.onTick(() => plot && plot.now.setAttribute("d", plot.line(clock.index)));
     paints.push(paint);
   }
-  paints.forEach((paint) => paint());
+  // The width of each is known only when all stand.
+  paints.forEach(drawn);
 }

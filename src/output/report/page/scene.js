@@ -43,8 +43,7 @@ function drawScene(scene, host, readout, describe, scale) {
     readout.textContent = describe(layout.bladders[b], layout);
     readout.classList.remove("dim");
   };
-  redrawn(paint);
-  paint();
+  drawn(paint);
   return { layout, again: () => chosen >= 0 && choose(chosen) };
 }
 

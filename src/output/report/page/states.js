@@ -18,12 +18,7 @@ function showPath() {
     const size = largest(x);
     const factor = { across: roundFactor(size, scene.length), along: 1 };
     const bounds = { x0: 0, x1: scene.length, y0: 0, y1: 0 };
-    for (let k = 0; k < x.length; k++) {
-      bounds.x0 = Math.min(bounds.x0, z[k]);
-      bounds.x1 = Math.max(bounds.x1, z[k]);
-      bounds.y0 = Math.min(bounds.y0, x[k] * factor.across);
-      bounds.y1 = Math.max(bounds.y1, x[k] * factor.across);
-    }
+    x.forEach((across, k) => widen(bounds, z[k], across * factor.across));
     bounds.y0 -= 0.8 * scene.height;
     bounds.y1 += 0.8 * scene.height;
     const curve = (s) => {
@@ -42,10 +37,7 @@ function showPath() {
         ctx.fillStyle = css("--faint");
         ctx.globalAlpha = 0.05;
         const every = Math.max(1, Math.floor(states.length / 60));
-        for (let s = 0; s < states.length; s += every) {
-          const c = curve(s);
-          paintShade(ctx, view, c, scene);
-        }
+        for (let s = 0; s < states.length; s += every) paintShade(ctx, view, curve(s), scene);
         ctx.globalAlpha = 1;
         paintBeam(ctx, view, curve(now), scene, layout, null);
       });
@@ -58,9 +50,8 @@ function showPath() {
     };
     const follow = [];
     slider.addEventListener("input", paint);
-    redrawn(paint);
     loadCurves(body, path, columns, follow);
-    paint();
+    drawn(paint);
   }
   showEvents();
   if (path) section("table", "Every state", null).append(tableCard({ ...path, title: null, name: "Every state", about: "The first column is the load factor; the last counts the ways in which the state gives way (0: stable)." }));
@@ -80,30 +71,29 @@ function loadCurves(body, path, columns, follow) {
     const slot = el("div");
     grid.append(figure(title, `At the end of the path ${quantity(values.at(-1), columns[k][1])}. The ring is the state shown above.${data.events?.length ? " Dashed: where something happens on the way." : ""}`, slot));
     let mark = null;
-    let drawn = null;
+    let plot = null;
     let at = path.rows.length - 1;
     const move = () => {
-      if (!drawn || !(at in share)) return;
-      mark.setAttribute("cx", drawn.px(share[at]));
-      mark.setAttribute("cy", drawn.py(values[at]));
+      if (!plot || !(at in share)) return;
+      mark.setAttribute("cx", plot.px(share[at]));
+      mark.setAttribute("cy", plot.py(values[at]));
     };
     const draw = () => {
       const [low, high] = roomy(extent(values));
       const [x0, x1] = roomy(extent(share));
-      drawn = chart(Math.max(slot.clientWidth, 260), 240, { low: x0, high: x1, unit: "1", name: "load factor" }, { low, high, unit: columns[k][1], name: title }, title);
-      drawn.area.append(svg("path", { d: linePath(values.length, (i) => [drawn.px(share[i]), drawn.py(values[i])]), style: `fill:none;stroke:${css("--accent")};stroke-width:2.2` }));
+      plot = chart(Math.max(slot.clientWidth, 260), 240, { low: x0, high: x1, unit: "1", name: "load factor" }, { low, high, unit: columns[k][1], name: title }, title);
+      plot.area.append(svg("path", { d: linePath(values.length, (i) => [plot.px(share[i]), plot.py(values[i])]), style: `fill:none;stroke:${css("--accent")};stroke-width:2.2` }));
       for (const e of data.events || []) {
-        const x = drawn.px(e.load_factor);
-        drawn.area.append(svg("line", { x1: x, x2: x, y1: 0, y2: 240, "stroke-dasharray": "3 4", style: `stroke:${css("--faint")}` }));
+        const x = plot.px(e.load_factor);
+        plot.area.append(svg("line", { x1: x, x2: x, y1: 0, y2: 240, "stroke-dasharray": "3 4", style: `stroke:${css("--faint")}` }));
       }
       mark = svg("circle", { r: 6, style: `fill:${css("--card")};stroke:${css("--accent")};stroke-width:2.6` });
-      drawn.area.append(mark);
-      slot.replaceChildren(drawn.node);
+      plot.area.append(mark);
+      slot.replaceChildren(plot.node);
       move();
     };
     follow.push((s) => ((at = s), move()));
-    redrawn(draw);
-    draw();
+    drawn(draw);
   }
 }
 
@@ -139,7 +129,7 @@ function showModes() {
     const words = el("p", { class: "caption" });
     let phase = 0;
     let playing = !calm.matches;
-    const button = el("button", { type: "button", class: "main", "aria-label": playing ? "Pause" : "Play" }, icon(playing ? "pause" : "play"));
+    const button = showPlaying(el("button", { type: "button", class: "main" }), playing);
     const slider = el("input", { type: "range", min: 0, max: 100, value: 0, "aria-label": "Phase", style: "flex:1 1 160px", "data-keys": "" });
     body.append(figure(null, null, el("div", { class: "controls" }, el("label", {}, "Mode", select), button, slider), canvas, words));
     const bounds = { x0: -0.02 * scene.length, x1: 1.05 * scene.length, y0: -0.13 * scene.length - 0.6 * scene.height, y1: 0.13 * scene.length + 0.6 * scene.height };
@@ -178,8 +168,7 @@ function showModes() {
     const play = (on) => {
       playing = on;
       before = null;
-      button.replaceChildren(icon(on ? "pause" : "play"));
-      button.setAttribute("aria-label", on ? "Pause" : "Play");
+      showPlaying(button, on);
       if (on) requestAnimationFrame(frame);
     };
     button.addEventListener("click", () => play(!playing));
@@ -190,16 +179,11 @@ function showModes() {
       event.preventDefault();
       play(!playing);
     });
-    redrawn(paint);
-    paint();
+    drawn(paint);
     if (playing) requestAnimationFrame(frame);
   }
-  if (data.passivity) showPassivity(data.passivity);
+  if (data.passivity) document.getElementById("main").append(figure("Passivity of the coupling", data.passivity));
   if (data.table) section("table", "Every mode", null).append(tableCard({ ...data.table, title: null, name: data.table.title, about: "Undrained: the same shape with every bladder sealed. Drained: with one pressure in each network. The growth rate is negative where the motion dies away." }));
   if (data.picture) section("picture", "All shapes at once", null).append(pictureCard({ picture: data.picture, title: null, about: "Displacement along the beam of every mode, with the pressures of the bladders." }));
   if (data.scene) showScene();
-}
-
-function showPassivity(text) {
-  document.getElementById("main").append(figure("Passivity of the coupling", text));
 }

@@ -3,13 +3,14 @@
 
 use std::f64::consts::FRAC_PI_2;
 
-use super::canvas::{FAINT_INK, INK, LineStyle, TextAnchor, TextStyle};
-use super::colour::{Colour, PALETTE};
-use super::extent;
-use super::picture::{Glyph, Panel, Picture, PictureAxis, PictureSeries};
+use super::text::spoken;
 use crate::case::schema::Method;
 use crate::output::numbers::significant;
-use crate::study::accuracy::Scheme;
+use crate::output::plot::canvas::{FAINT_INK, INK, LineStyle, TextAnchor, TextStyle};
+use crate::output::plot::colour::{Colour, PALETTE};
+use crate::output::plot::extent;
+use crate::output::plot::picture::{Glyph, Panel, Picture, PictureAxis, PictureSeries};
+use crate::study::accuracy::{Scheme, Study, StudyPlan};
 
 /// A run as a marker.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -30,15 +31,6 @@ pub struct RunMarker {
     pub front: bool,
 }
 
-/// Point of equal temporal and spatial error.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct BalanceMark {
-    /// Relative error.
-    pub error: f64,
-    /// Wall time [s].
-    pub seconds: f64,
-}
-
 /// Runs with one mesh and scheme.
 #[derive(Clone, Debug, PartialEq)]
 pub struct MeshLine {
@@ -48,25 +40,33 @@ pub struct MeshLine {
     pub scheme: Scheme,
     /// Runs, from loose to tight tolerance.
     pub markers: Vec<RunMarker>,
-    /// Point of equal errors.
-    pub balance: Option<BalanceMark>,
 }
 
-/// Data of the picture.
-#[derive(Clone, Debug, PartialEq)]
-pub struct WorkPrecision {
-    /// Name of the case.
-    pub case: String,
-    /// Quantity whose error is shown.
-    pub measure: String,
-    /// Own error of the reference.
-    pub own: f64,
-    /// Largest number of timed runs per point.
-    pub repeats: usize,
-    /// Lines, ordered by scheme, then by mesh.
-    pub lines: Vec<MeshLine>,
-    /// True if errors in time have their own panel.
-    pub split: bool,
+/// Runs of a study by mesh and scheme, ordered by scheme, then by mesh.
+pub fn mesh_lines(study: &Study) -> Vec<MeshLine> {
+    let marker = |k: usize| {
+        let trial = &study.points[k].trial;
+        let error = study.error(k)?;
+        Some(RunMarker {
+            error: error.total.max,
+            temporal: error.temporal.map(|e| e.max),
+            least_s: trial.wall_min_s,
+            median_s: trial.wall_median_s,
+            rtol: trial.setting.rtol,
+            judged: error.judged,
+            front: study.points[k].on_front,
+        })
+    };
+    let line = |scheme: Scheme, cells: usize| MeshLine {
+        cells,
+        scheme,
+        markers: study.line(cells, scheme).into_iter().filter_map(marker).collect(),
+    };
+    let StudyPlan { schemes, cells, .. } = &study.plan;
+    let all = schemes
+        .iter()
+        .flat_map(|scheme| cells.iter().map(|cells| line(*scheme, *cells)));
+    all.collect()
 }
 
 /// Radius of a marker [pt].
@@ -76,12 +76,14 @@ const FRONT: Colour = Colour(0xd9, 0xdd, 0xe1);
 const SHADE: Colour = Colour(0xf4, 0xf2, 0xec);
 
 /// Draws the picture; `None` if there is nothing to draw.
-pub fn draw(data: &WorkPrecision) -> Option<String> {
+pub fn draw(study: &Study) -> Option<String> {
+    let measure = study.measure()?;
+    let (meshes, own) = (mesh_lines(study), measure.own().max);
+    // errors in time have their own panel
+    let split = study.references.len() > 1;
     let markers = || {
-        data.lines
-            .iter()
-            .flat_map(|l| &l.markers)
-            .filter(|m| m.error > 0.0 && m.least_s > 0.0)
+        let all = meshes.iter().flat_map(|line| &line.markers);
+        all.filter(|m| m.error > 0.0 && m.least_s > 0.0)
     };
     let times = around(extent(markers().flat_map(|m| [m.least_s, m.median_s]))?);
     let errors = around(extent(markers().map(|m| m.error))?);
@@ -91,7 +93,7 @@ pub fn draw(data: &WorkPrecision) -> Option<String> {
     let x = |name: &str, (lo, hi): (f64, f64)| PictureAxis::new(name, "1", 8).between(lo, hi).logarithmic(true);
     let mut series = vec![];
     // errors for which the reference is not accurate enough
-    let edge = 10.0 * data.own;
+    let edge = 10.0 * own;
     if edge > errors.0 {
         let (lo, hi) = times;
         series.push(PictureSeries::band(
@@ -102,17 +104,17 @@ pub fn draw(data: &WorkPrecision) -> Option<String> {
     let mut front: Vec<&RunMarker> = markers().filter(|m| m.front).collect();
     front.sort_by(|a, b| b.error.total_cmp(&a.error));
     let line = PictureSeries::line(front.iter().map(|m| (m.error, m.least_s)), LineStyle::solid(FRONT, 9.0));
-    let balances = balances(data);
+    let balances = balances(study);
     series.push(line);
     series.extend(balances.iter().cloned());
-    series.extend(lines(data, |m| Some(m.error)));
+    series.extend(lines(&meshes, |m| Some(m.error)));
     // tolerances at the markers of the front
     let words = TextStyle::new(9.5, TextAnchor::Right).coloured(FAINT_INK);
     let label =
         |m: &&RunMarker| PictureSeries::label((m.error, m.least_s), (-8.0, 10.0), format!("{:e}", m.rtol), words);
     series.extend(front.iter().map(label));
-    series.extend(notes(data, !balances.is_empty()));
-    let across = match data.split {
+    series.extend(notes(study, &meshes, (own, !balances.is_empty())));
+    let across = match split {
         true => "relative error, of time and space together",
         false => "relative error",
     };
@@ -120,13 +122,16 @@ pub fn draw(data: &WorkPrecision) -> Option<String> {
         legend_beside: true,
         ..Panel::new((560.0, 400.0), x(across, errors), y.clone(), series)
     };
-    let in_time = extent(markers().filter_map(|m| m.temporal).filter(|e| *e > 0.0)).filter(|_| data.split);
+    let in_time = extent(markers().filter_map(|m| m.temporal).filter(|e| *e > 0.0)).filter(|_| split);
     let lower = in_time.map(|errors| {
         let x = x("relative error of the time integration alone", around(errors));
-        Panel::new((560.0, 300.0), x, y, lines(data, |m| m.temporal))
+        Panel::new((560.0, 300.0), x, y, lines(&meshes, |m| m.temporal))
     });
-    let title = format!("{} · what accuracy costs", data.case);
-    let about = format!("error of {} against wall time, lower left is better", data.measure);
+    let title = format!("{} · what accuracy costs", study.case);
+    let about = format!(
+        "error of {} against wall time, lower left is better",
+        spoken(&measure.name)
+    );
     Picture::stacked(title, about, [total].into_iter().chain(lower)).svg()
 }
 
@@ -137,12 +142,12 @@ fn around((lo, hi): (f64, f64)) -> (f64, f64) {
 }
 
 /// Markers of every mesh and scheme over an error, joined by lines, with whiskers to their median times.
-fn lines(data: &WorkPrecision, error: fn(&RunMarker) -> Option<f64>) -> Vec<PictureSeries> {
-    let mut meshes: Vec<usize> = data.lines.iter().map(|l| l.cells).collect();
+fn lines(all: &[MeshLine], error: fn(&RunMarker) -> Option<f64>) -> Vec<PictureSeries> {
+    let mut meshes: Vec<usize> = all.iter().map(|l| l.cells).collect();
     meshes.sort_unstable();
     meshes.dedup();
     let mut series = vec![];
-    for line in data.lines.iter().filter(|line| !line.markers.is_empty()) {
+    for line in all.iter().filter(|line| !line.markers.is_empty()) {
         let colour = PALETTE[meshes.iter().position(|k| *k == line.cells).unwrap_or(0) % PALETTE.len()];
         let found = |m: &RunMarker| error(m).filter(|e| *e > 0.0 && m.least_s > 0.0);
         let shown: Vec<(&RunMarker, f64)> = line.markers.iter().filter_map(|m| Some((m, found(m)?))).collect();
@@ -175,17 +180,13 @@ fn lines(data: &WorkPrecision, error: fn(&RunMarker) -> Option<f64>) -> Vec<Pict
 }
 
 /// Lines of equal errors in time and space, one per scheme.
-fn balances(data: &WorkPrecision) -> Vec<PictureSeries> {
-    let mut schemes: Vec<Scheme> = data.lines.iter().map(|l| l.scheme).collect();
-    schemes.dedup();
-    let of = |scheme: Scheme| {
-        let alike = data.lines.iter().filter(move |l| l.scheme == scheme);
-        alike
-            .filter_map(|l| l.balance)
-            .map(|b| (b.error, b.seconds))
-            .collect::<Vec<_>>()
+fn balances(study: &Study) -> Vec<PictureSeries> {
+    let of = |scheme: &Scheme| {
+        let mesh = |cells: &usize| study.balances.iter().find(|b| (b.cells, b.scheme) == (*cells, *scheme));
+        let alike = study.plan.cells.iter().filter_map(mesh);
+        alike.map(|b| (b.at.error, b.at.cost)).collect::<Vec<_>>()
     };
-    let all = schemes.into_iter().map(of).filter(|points| !points.is_empty());
+    let all = study.plan.schemes.iter().map(of).filter(|points| !points.is_empty());
     let drawn = all.flat_map(|points| {
         [
             PictureSeries::line(points.iter().copied(), LineStyle::dashed(FAINT_INK, 1.0, (2.0, 4.0))),
@@ -196,23 +197,24 @@ fn balances(data: &WorkPrecision) -> Vec<PictureSeries> {
 }
 
 /// Legend entries without a line of their own.
-fn notes(data: &WorkPrecision, balances: bool) -> Vec<PictureSeries> {
+fn notes(study: &Study, meshes: &[MeshLine], (own, balances): (f64, bool)) -> Vec<PictureSeries> {
     let front = PictureSeries::line([], LineStyle::solid(FRONT, 9.0));
     let mut all = vec![front.named("no run is cheaper and\nmore accurate; rtol\nbeside it")];
     let none = |glyph: Glyph, colour: Colour| PictureSeries::marks([], glyph, colour);
     if balances {
         all.push(none(Glyph::Cross(5.0), INK).named("error in time equals\nerror in space"));
     }
-    if data.lines.iter().flat_map(|l| &l.markers).any(|m| !m.judged) {
+    if meshes.iter().flat_map(|l| &l.markers).any(|m| !m.judged) {
         let hollow = none(glyph(Scheme::ida(2), false), FAINT_INK);
         all.push(hollow.named("reference not ten\ntimes better"));
     }
     all.push(PictureSeries::note(format!(
         "reference's own error {}",
-        significant(data.own, 1)
+        significant(own, 1)
     )));
-    if data.repeats > 1 {
-        let text = format!("time: least of {} runs;\nwhisker: to the median", data.repeats);
+    let repeats = study.points.iter().map(|p| p.trial.repeats).max().unwrap_or(1);
+    if repeats > 1 {
+        let text = format!("time: least of {repeats} runs;\nwhisker: to the median");
         all.push(PictureSeries::note(text));
     }
     all

@@ -1,11 +1,14 @@
 //! `effects.svg`: one bar per effect for the change of results without it, on a logarithmic scale, and one for the remaining work.
 
-use super::canvas::{FAINT_INK, INK, LineStyle, TextAnchor, TextStyle};
-use super::colour::Colour;
-use super::extent;
-use super::picture::{Glyph, Panel, Picture, PictureAxis, PictureSeries};
+use super::{ShownQuantity, table};
+use crate::case::schema::Effect;
 use crate::output::numbers::significant;
-use crate::study::effects::EffectVerdict;
+use crate::output::plot::canvas::{FAINT_INK, INK, LineStyle, TextAnchor, TextStyle};
+use crate::output::plot::colour::Colour;
+use crate::output::plot::extent;
+use crate::output::plot::picture::{Glyph, Panel, Picture, PictureAxis, PictureSeries};
+use crate::study::effects::ablation::ComparedRun;
+use crate::study::effects::{Ablation, EffectVerdict};
 
 /// A model that is compared with the full one.
 #[derive(Clone, Debug, PartialEq)]
@@ -22,19 +25,25 @@ pub struct Bar {
     pub verdict: Option<EffectVerdict>,
 }
 
-/// Data of the picture.
-#[derive(Clone, Debug, PartialEq)]
-pub struct AblationBars {
-    /// Name of the case.
-    pub case: String,
-    /// Quantity whose change is shown.
-    pub measure: String,
-    /// Largest negligible change.
-    pub tolerance: f64,
-    /// The integrator's own error.
-    pub own: Option<f64>,
-    /// Bars from top to bottom.
-    pub bars: Vec<Bar>,
+/// Bars from top to bottom.
+pub fn bars(found: &Ablation, shown: &ShownQuantity) -> Vec<Bar> {
+    let bar = |name: &str, compared: &ComparedRun, verdict: Option<EffectVerdict>| Bar {
+        name: name.into(),
+        change: shown.change(compared),
+        largest: compared.largest.as_ref().map(|l| l.1),
+        work: compared.work,
+        verdict,
+    };
+    let effects = found.rows.iter().filter_map(|row| {
+        let name = match row.without.as_slice() {
+            [] => row.name.to_string(),
+            others => format!("{} (no {})", row.name, Effect::names(others, ", ")),
+        };
+        Some(bar(&name, row.left_out.as_ref()?, Some(row.verdict)))
+    });
+    effects
+        .chain(table::beside(found).map(|(name, c)| bar(name, c, None)))
+        .collect()
 }
 
 /// Height of a row [pt].
@@ -49,24 +58,25 @@ const WORK: Colour = Colour(0xc3, 0xc9, 0xd0);
 const SHADE: Colour = Colour(0xf4, 0xf2, 0xec);
 
 /// Draws the picture; `None` if there is nothing to draw.
-pub fn draw(data: &AblationBars) -> Option<String> {
-    let shown = data.bars.iter().flat_map(|b| [b.change, b.largest]).flatten();
-    let shown = shown.chain(data.own).filter(|x| *x > 0.0).chain([data.tolerance]);
-    let (lo, hi) = extent(shown.map(|x| x.max(LEAST).log10()))?;
+pub fn draw(found: &Ablation, shown: &ShownQuantity) -> Option<String> {
+    let (bars, own) = (bars(found, shown), shown.own(found));
+    let drawn = bars.iter().flat_map(|b| [b.change, b.largest]).flatten();
+    let drawn = drawn.chain(own).filter(|x| *x > 0.0).chain([found.tolerance]);
+    let (lo, hi) = extent(drawn.map(|x| x.max(LEAST).log10()))?;
     let (lo, hi) = (10_f64.powf((lo - 0.5).floor()), 10_f64.powf((hi + 0.2).ceil()));
-    let finite = data.bars.iter().map(|b| b.work).filter(|w| w.is_finite());
+    let finite = bars.iter().map(|b| b.work).filter(|w| w.is_finite());
     let most = finite.fold(1.2, f64::max).min(MOST);
-    let count = data.bars.len() as f64;
+    let count = bars.len() as f64;
     let row = |k: usize| count - k as f64 - 0.5;
     let mut changes = vec![];
-    if let Some(own) = data.own {
+    if let Some(own) = own {
         changes.push(PictureSeries::band(
             &[(lo, 0.0, count), (own.clamp(lo, hi), 0.0, count)],
             SHADE,
         ));
     }
     let mut work = vec![];
-    for (k, bar) in data.bars.iter().enumerate() {
+    for (k, bar) in bars.iter().enumerate() {
         let [below, at, above] = [-0.32, 0.0, 0.32].map(|off| row(k) + off);
         let small = TextStyle::new(10.0, TextAnchor::Left);
         let word =
@@ -92,20 +102,15 @@ pub fn draw(data: &AblationBars) -> Option<String> {
         }
     }
     let dashed = LineStyle::dashed(INK, 1.2, (5.0, 3.0));
-    let tolerance = PictureSeries::line([(data.tolerance, 0.0), (data.tolerance, count)], dashed);
-    changes.push(tolerance.named(format!("tolerance {:e}", data.tolerance)));
+    let tolerance = PictureSeries::line([(found.tolerance, 0.0), (found.tolerance, count)], dashed);
+    changes.push(tolerance.named(format!("tolerance {:e}", found.tolerance)));
     work.push(PictureSeries::line(
         [(1.0, 0.0), (1.0, count)],
         LineStyle::solid(FAINT_INK, 1.0),
     ));
+    let names = bars.iter().enumerate().map(|(k, bar)| (row(k), bar.name.clone()));
     let y = PictureAxis {
-        labels: Some(
-            data.bars
-                .iter()
-                .enumerate()
-                .map(|(k, bar)| (row(k), bar.name.clone()))
-                .collect(),
-        ),
+        labels: Some(names.collect()),
         ..PictureAxis::default().between(0.0, count)
     };
     let name = "relative change; shaded: the integrator's own error";
@@ -113,10 +118,10 @@ pub fn draw(data: &AblationBars) -> Option<String> {
     let beside = PictureAxis::new("work, relative", "1", 5).between(0.0, 1.4 * most);
     let height = PITCH * count;
     let picture = Picture {
-        title: format!("{} · what each effect does", data.case),
+        title: format!("{} · what each effect does", found.case),
         about: format!(
             "relative change of {} without it (ring: the quantity that changes most)",
-            data.measure
+            shown.describe()
         ),
         rows: vec![vec![
             Panel::new((360.0, height), x, y.clone(), changes),
