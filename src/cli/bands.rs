@@ -7,7 +7,7 @@ use clap::Args;
 
 use super::arguments::{CaseArguments, ResultArguments};
 use super::{resources, terminal};
-use crate::error::numbers::error_percent;
+use crate::error::numbers::{counted, error_percent};
 use crate::error::{Code, Error, Result};
 use crate::output::band_structure as files;
 use crate::output::kind::FolderKind;
@@ -88,7 +88,20 @@ pub fn bands(asked: &BandsArguments) -> Result<ExitCode> {
 fn answer(case: &str, band: [f64; 2], found: &BandStructure) -> BandsRecord {
     let (about, cell) = (&found.lattice.about, &found.lattice.cell);
     let standing: Vec<LatticeModeRecord> = found.standing.iter().map(mode).collect();
-    let mut warnings = super::response::cautions(0, about.moving());
+    let mut warnings = vec![];
+    if let Some(first) = cell.others.first() {
+        warnings.push(Code::OtherCells.warning(format!(
+            "{} of the beam differ from those in its middle, the first at segment {}: the waves are those of the middle",
+            counted(cell.others.len() as u64, "cell"),
+            first + 1
+        )));
+    }
+    if about.moving() {
+        warnings.push(Code::NotAtRest.warning(
+            "the start is not an equilibrium: the beam would start to move under its loads. The waves are those of the beam \
+             as it starts.",
+        ));
+    }
     if let Some(growing) = standing
         .iter()
         .chain(&spectrum(found))
@@ -101,12 +114,19 @@ fn answer(case: &str, band: [f64; 2], found: &BandStructure) -> BandsRecord {
     }
     warnings.extend(about.range.iter().cloned());
     let unknown = found.unknown.iter().map(|why| format!("not known: {why}"));
-    let error = |mode: &LatticeModeRecord| Some((mode.error_hz? / mode.frequency_hz, mode.frequency_hz));
-    let worst = standing.iter().filter_map(error).max_by(|a, b| a.0.total_cmp(&b.0));
-    let coarse = worst.filter(|(error, _)| *error > LARGE).map(|(error, hz)| {
+    let of_mode = |mode: &LatticeModeRecord| Some((mode.error_hz? / mode.frequency_hz, mode.frequency_hz));
+    let worst = standing.iter().filter_map(of_mode).max_by(|a, b| a.0.total_cmp(&b.0));
+    let worst = worst.map(|(error, hz)| (error, format!("the standing wave at {hz:.4} Hz")));
+    let of_wave = |wave: &BandWave| Some(wave.error? / wave.wave_number.norm());
+    let mut errors: Vec<f64> = found.waves.iter().filter_map(of_wave).collect();
+    errors.sort_by(f64::total_cmp);
+    let median = errors
+        .get(errors.len() / 2)
+        .map(|error| (*error, "wave numbers (median)".into()));
+    let large = worst.into_iter().chain(median).filter(|(error, _)| *error > LARGE);
+    let coarse = large.map(|(error, of)| {
         format!(
-            "error of the standing wave at {hz:.4} Hz by the mesh: {}. Use a finer mesh (/mesh/cells_per_segment, \
-             /mesh/cells_per_bladder) or a lower --to",
+            "error of {of} by the mesh: {}. Use a finer mesh (/mesh/cells_per_segment, /mesh/cells_per_bladder) or a lower --to",
             error_percent(error)
         )
     });

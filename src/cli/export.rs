@@ -26,7 +26,7 @@ use crate::study::response::growing;
 pub struct ExportArguments {
     /// Result folder of a run; a case with --state-space
     pub dir: PathBuf,
-    /// Write the state-space model of small motions of a case, matrices A, B, C and D, to this file: .npz or .json
+    /// Write the state-space model of small motions of a case, matrices A, B, C and D, to this file: .npz, .mat or .json
     #[arg(long, value_name = "FILE", requires = "input", requires = "output", conflicts_with_all = ["format", "times", "every", "out"], value_parser = super::progress_line::output_path())]
     pub state_space: Option<PathBuf>,
     /// Change a value of the case first; repeatable

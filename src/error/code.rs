@@ -90,6 +90,7 @@ codes! {
     LateRest = "W037", "Fluid not at rest within the run.";
     WaterHammer = "W038", "Unresolved water hammer.";
     Boiling = "W040", "A liquid below its vapor pressure.";
+    OtherCells = "W041", "Cells differ from those in the middle.";
 }
 
 impl Code {

@@ -183,6 +183,12 @@ fn picture(found: &BandsRecord) -> Picture {
         });
         series.collect::<Vec<_>>()
     };
+    let drawn = found
+        .waves
+        .iter()
+        .map(|wave| wave.attenuation_db.abs())
+        .filter(|decibel| *decibel <= DRAWN);
+    let top = (1.1 * drawn.fold(1.0, f64::max)).min(DRAWN);
     // strongly attenuated waves have no visible wave number
     let lag = |wave: &WaveRecord| (wave.attenuation_db.abs() < DRAWN).then(|| wave.real.abs() / PI);
     let decay = |wave: &WaveRecord| Some(wave.attenuation_db.abs()).filter(|decibel| *decibel <= DRAWN);
@@ -201,8 +207,8 @@ fn picture(found: &BandsRecord) -> Picture {
         Panel::new(
             (620.0, 170.0),
             x(),
-            PictureAxis::new("attenuation per cell", "dB", 6).between(0.0, DRAWN),
-            gaps(DRAWN).into_iter().chain(marks(&decay, false)).collect(),
+            PictureAxis::new("attenuation per cell", "dB", 6).between(0.0, top),
+            gaps(top).into_iter().chain(marks(&decay, false)).collect(),
         ),
     ];
     Picture::stacked(

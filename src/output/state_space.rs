@@ -1,4 +1,4 @@
-//! A state-space model as a file: arrays for NumPy, or JSON.
+//! A state-space model as a file: arrays for NumPy or MATLAB, or JSON.
 
 use std::io::{self, Write as _};
 use std::path::Path;
@@ -31,13 +31,14 @@ struct Named<'a> {
     z0: &'a [f64],
 }
 
-/// Writes a model to a file, `.npz` or `.json`.
+/// Writes a model to a file, `.npz`, `.mat` or `.json`.
 ///
 /// # Errors
-/// The ending is neither `.npz` nor `.json`, or the file cannot be written.
+/// The file has another ending, or the file cannot be written.
 pub fn write(path: &Path, case: &str, input: &str, outputs: Vec<String>, at_s: f64, model: &StateSpace) -> Result<()> {
     let bytes = match path.extension().and_then(|ending| ending.to_str()) {
-        Some("npz") => arrays(model).map_err(|why| fault("write", path, why))?,
+        Some("npz") => npz(model).map_err(|why| fault("write", path, why))?,
+        Some("mat") => mat(model),
         Some("json") => {
             let named = Named {
                 case,
@@ -58,7 +59,7 @@ pub fn write(path: &Path, case: &str, input: &str, outputs: Vec<String>, at_s: f
         }
         _ => {
             let what = format!(
-                "--state-space {}: a file that ends in .npz or .json is wanted",
+                "--state-space {}: a file that ends in .npz, .mat or .json is wanted",
                 path.display()
             );
             return Err(Error::Usage(what));
@@ -67,18 +68,43 @@ pub fn write(path: &Path, case: &str, input: &str, outputs: Vec<String>, at_s: f
     put_whole(path, |file| file.write_all(&bytes))
 }
 
-/// Arrays `A`, `B`, `C`, `D`, `input_rate`, `x0`, `u0`, `z0`.
-fn arrays(model: &StateSpace) -> io::Result<Vec<u8>> {
-    let mut npz = ZipWriter::new(io::Cursor::new(Vec::new()));
-    let [n, outputs] = [model.b.len() as u64, model.d.len() as u64];
+/// Matrices of a file: name, rows, columns, entries row by row.
+fn matrices(model: &StateSpace) -> [(&'static str, [usize; 2], Vec<f64>); 8] {
+    let [n, outputs] = [model.b.len(), model.d.len()];
     let all = |rows: &[Vec<f64>]| rows.iter().flatten().copied().collect::<Vec<f64>>();
-    write_array(&mut npz, "A", &[n, n], all(&model.a))?;
-    write_array(&mut npz, "B", &[n, 1], model.b.clone())?;
-    write_array(&mut npz, "C", &[outputs, n], all(&model.c))?;
-    write_array(&mut npz, "D", &[outputs, 1], model.d.clone())?;
-    write_array(&mut npz, "input_rate", &[1], [model.input_rate as f64])?;
-    write_array(&mut npz, "x0", &[n], model.x0.clone())?;
-    write_array(&mut npz, "u0", &[1], [model.u0])?;
-    write_array(&mut npz, "z0", &[outputs], model.z0.clone())?;
+    [
+        ("A", [n, n], all(&model.a)),
+        ("B", [n, 1], model.b.clone()),
+        ("C", [outputs, n], all(&model.c)),
+        ("D", [outputs, 1], model.d.clone()),
+        ("input_rate", [1, 1], vec![model.input_rate as f64]),
+        ("x0", [n, 1], model.x0.clone()),
+        ("u0", [1, 1], vec![model.u0]),
+        ("z0", [outputs, 1], model.z0.clone()),
+    ]
+}
+
+fn npz(model: &StateSpace) -> io::Result<Vec<u8>> {
+    let mut npz = ZipWriter::new(io::Cursor::new(Vec::new()));
+    for (name, [rows, columns], entries) in matrices(model) {
+        let vector = !["A", "B", "C", "D"].contains(&name);
+        let shape = [rows as u64, columns as u64];
+        write_array(&mut npz, name, if vector { &shape[..1] } else { &shape }, entries)?;
+    }
     Ok(npz.finish()?.into_inner())
+}
+
+/// A MATLAB file of level 4: for each matrix five integers (type, rows, columns, no imaginary part, length of the name), the name, and
+/// the entries column by column, all little-endian. Source: MATLAB, MAT-File Format.
+fn mat(model: &StateSpace) -> Vec<u8> {
+    let mut bytes = vec![];
+    for (name, [rows, columns], entries) in matrices(model) {
+        for number in [0, rows, columns, 0, name.len() + 1] {
+            bytes.extend((number as u32).to_le_bytes());
+        }
+        bytes.extend(name.bytes().chain([0]));
+        let transposed = (0..columns).flat_map(|column| (0..rows).map(move |row| row * columns + column));
+        bytes.extend(transposed.flat_map(|place| entries[place].to_le_bytes()));
+    }
+    bytes
 }

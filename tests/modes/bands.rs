@@ -238,6 +238,18 @@ fn the_cell_is_found_or_the_reason_why_not() {
         .chain((1..=10).map(|k| json!({"bladders": [-k], "ends": ["sealed", "sealed"]})))
         .collect();
     assert_eq!(lattice(&case).cell.segments, 2);
+    assert!(lattice(&case).cell.others.is_empty());
+    // a mass at every fourth of twenty segments: two equal segments in the middle are not the cell
+    let mut loaded = beam(4, &json!({}));
+    loaded["mesh"]["segments"] = json!(20);
+    loaded["attachments"] = (1..5)
+        .map(|k| json!({"at": f64::from(k) / 5.0, "mass_kg": 0.1}))
+        .collect();
+    assert_eq!(lattice(&loaded).cell.segments, 4);
+    // one defect
+    loaded["attachments"] = json!([{"at": 0.2, "mass_kg": 0.1}]);
+    let defect = lattice(&loaded).cell;
+    assert_eq!((defect.segments, defect.others.len()), (1, 1), "{:?}", defect.others);
     case["loads"] = json!([{"gravity": {"x_m_s2": -9.81}}]);
     case["start"] = json!({"equilibrium": {"loads_at_s": 0}});
     let refused = Lattice::new(&checked(&case)).err().unwrap().to_string();

@@ -292,6 +292,29 @@ fn responses_have_files_and_a_model() {
             .iter()
             .all(|name| npz.by_name(&format!("{name}.npy")).is_ok())
     );
+    // the same matrices for MATLAB: type, rows, columns, no imaginary part, length of the name
+    let mat = dir.path().join("model.mat");
+    let for_matlab = [
+        &["export", "cases/wiring-3.json", "--state-space", mat.to_str().unwrap()],
+        &of[..],
+    ]
+    .concat();
+    assert_eq!(run(&for_matlab).0, 0);
+    let bytes = fs::read(&mat).unwrap();
+    let integer = |k: usize| u32::from_le_bytes(bytes[4 * k..4 * k + 4].try_into().unwrap()) as usize;
+    let states = integer(1);
+    assert_eq!([0, 2, 3, 4].map(integer), [0, states, 0, 2]);
+    assert_eq!(&bytes[20..22], b"A\0");
+    let mut a = vec![];
+    std::io::Read::read_to_end(&mut npz.by_name("A.npy").unwrap(), &mut a).unwrap();
+    let entry = |bytes: &[u8], place: usize| f64::from_le_bytes(bytes[place..place + 8].try_into().unwrap());
+    let start = a.len() - 8 * states * states;
+    for (row, column) in [(0, 1), (1, 0), (2, 5), (states - 1, 3)] {
+        assert_eq!(
+            entry(&bytes, 22 + 8 * (column * states + row)),
+            entry(&a, start + 8 * (row * states + column))
+        );
+    }
     // at zero flow an opening has no effect, and rounding errors give no peaks
     let nothing = dir.path().join("nothing");
     let (code, said, _) = run(&[

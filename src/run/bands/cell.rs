@@ -9,6 +9,8 @@ use crate::run::modes::Linearised;
 const EQUAL: f64 = 1e-8;
 /// Smallest number of cells along a beam: two that are compared, and one beside each.
 const CELLS: usize = 4;
+/// Segments at each end of a longer beam whose equations the end may change.
+const ENDS: usize = 2;
 
 /// A cell of the beam that repeats along it: one or several segments, their bladders, and the tubes that lead from it toward the tip.
 #[derive(Clone, Debug, PartialEq)]
@@ -19,6 +21,8 @@ pub struct RepeatingCell {
     pub first: usize,
     /// Length of the cell [m].
     pub length: f64,
+    /// First segments of other cells that differ, apart from the ends of the beam.
+    pub others: Vec<usize>,
     /// Unknowns of the cell before it, of the cell and of the cell behind it, by their numbers in the beam, in the same order.
     pub unknowns: [Vec<usize>; 3],
     /// Entries of its equations.
@@ -39,18 +43,26 @@ pub struct CellEntry {
 }
 
 impl RepeatingCell {
-    /// The shortest cell that repeats in the middle of a beam.
+    /// The shortest cell that repeats along the beam, or else in its middle.
     ///
     /// # Errors
     /// [`Error::Usage`] if no cell repeats, with the reason for a cell of one segment.
     pub fn new(about: &Linearised) -> Result<Self> {
         let segments = about.system().mesh.segments;
-        let mut reason = None;
+        let (mut reason, mut in_the_middle) = (None, None::<Self>);
         for period in 1..=segments / CELLS {
             match Self::of_segments(about, period) {
-                Ok(cell) => return Ok(cell),
+                // a longer cell is one only if cells in it differ
+                Ok(cell) if cell.others.is_empty() => match &in_the_middle {
+                    Some(shorter) if !cell.contains_any(&shorter.others) => {}
+                    _ => return Ok(cell),
+                },
+                Ok(cell) => _ = in_the_middle.get_or_insert(cell),
                 Err(why) => _ = reason.get_or_insert(why),
             }
+        }
+        if let Some(cell) = in_the_middle {
+            return Ok(cell);
         }
         let why = reason.unwrap_or_else(|| format!("the beam has {segments} of at least {CELLS} segments"));
         Err(Error::Usage(format!(
@@ -61,33 +73,41 @@ impl RepeatingCell {
 
     fn of_segments(about: &Linearised, period: usize) -> std::result::Result<Self, String> {
         let system = about.system();
-        let before = (system.mesh.segments - CELLS * period) / 2;
-        let first = before + period;
+        let segments = system.mesh.segments;
+        let first = (segments - CELLS * period) / 2 + period;
         let place = Places::new(about, first, period);
-        let [all @ .., _] = [-1, 0, 1, 2].map(|cell| place.cells.get(&cell).cloned().unwrap_or_default());
-        let name = |unknown: usize| system.layout.name(unknown);
-        let [entries, next] = [0, 1].map(|cell| place.entries(about, cell));
-        let (entries, next) = (entries?, next?);
-        let alike = (-1..2).all(|cell| place.count(cell) == place.count(cell + 1));
-        let largest = |k: usize| entries.values().map(|values| values[k].abs()).fold(0.0, f64::max);
-        let largest = [0, 1].map(largest);
-        let differing = entries.iter().find(|(key, values)| {
-            let close = |other: &[f64; 2]| (0..2).all(|k| (values[k] - other[k]).abs() <= EQUAL * largest[k]);
-            !next.get(key).is_some_and(close)
-        });
-        let more = next.keys().find(|key| !entries.contains_key(key));
-        let unlike = differing.map(|(key, _)| key).or(more);
-        if let Some(&(row, ..)) = unlike
-            && let Some(row) = all[1].get(row)
-        {
-            return Err(format!(
-                "the equation of {} is not repeated in the next cell",
-                name(*row)
-            ));
-        }
-        if !alike || unlike.is_some() || all[1].is_empty() {
+        let unknowns = [-1, 0, 1].map(|cell| place.cells.get(&cell).cloned().unwrap_or_default());
+        let entries = place.entries(about, 0)?;
+        // the ends change the equations of the segments beside them
+        let ends = if segments >= CELLS * period + 2 * ENDS { ENDS } else { 1 };
+        let ends = ends as i64;
+        let segment = |cell: i64| first as i64 + cell * period as i64;
+        let inside = |cell: &i64| {
+            let [before, own, behind, last] = [-1, 0, 1, 2].map(|k| segment(cell + k));
+            before >= 0 && own >= ends && behind <= segments as i64 - ends && last <= segments as i64
+        };
+        let unlike = |cell: i64| -> Option<String> {
+            if place.count(cell) != place.count(0) || place.count(cell + 1) != place.count(1) {
+                return Some("the segments have unlike unknowns".into());
+            }
+            let row = match place.entries(about, cell) {
+                Ok(other) => differing(&entries, &other)?,
+                Err(why) => return Some(why),
+            };
+            let name = system.layout.name(unknowns[1][row]);
+            Some(format!("the equation of {name} is not repeated in each cell"))
+        };
+        if place.count(-1) != place.count(0) || place.count(0) == 0 {
             return Err("the segments in its middle have unlike unknowns".into());
         }
+        if let Some(why) = unlike(1) {
+            return Err(why);
+        }
+        let others = place.cells.keys().copied().filter(inside);
+        let others = others
+            .filter(|cell| unlike(*cell).is_some())
+            .map(|cell| segment(cell) as usize);
+        let others = others.collect();
         let entries = entries.into_iter().map(|((row, cell, column), values)| CellEntry {
             row,
             column,
@@ -98,9 +118,16 @@ impl RepeatingCell {
             segments: period,
             first,
             length: system.mesh.segment_lengths[first..first + period].iter().sum(),
-            unknowns: all,
+            others,
+            unknowns,
             entries: entries.collect(),
         })
+    }
+
+    /// True if one of the segments is in the cell.
+    fn contains_any(&self, segments: &[usize]) -> bool {
+        let own = self.first..self.first + self.segments;
+        segments.iter().any(|segment| own.contains(segment))
     }
 
     /// Number of unknowns.
@@ -116,6 +143,23 @@ impl RepeatingCell {
 
 /// Entries of A and B by row, cell and column.
 type EntriesByPlace = BTreeMap<(usize, usize, usize), [f64; 2]>;
+
+/// Equation in which two cells differ by more than rounding errors.
+fn differing(one: &EntriesByPlace, other: &EntriesByPlace) -> Option<usize> {
+    let mut largest = BTreeMap::<usize, [f64; 2]>::new();
+    for ((row, ..), values) in one {
+        let largest = largest.entry(*row).or_default();
+        *largest = [0, 1].map(|k| values[k].abs().max(largest[k]));
+    }
+    let at = |entries: &EntriesByPlace, key| entries.get(key).copied().unwrap_or_default();
+    let keys = one.keys().chain(other.keys());
+    let mut unlike = keys.filter(|key| {
+        let [a, b] = [at(one, key), at(other, key)];
+        let largest = largest.get(&key.0).copied().unwrap_or_default();
+        (0..2).any(|k| (a[k] - b[k]).abs() > EQUAL * largest[k])
+    });
+    unlike.next().map(|key| key.0)
+}
 
 /// Cells of unknowns, counted from the first one in the middle, and places in them.
 struct Places {
