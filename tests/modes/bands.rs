@@ -8,7 +8,6 @@ use std::fs;
 use assert_cmd::Command;
 use nalgebra::Complex;
 use serde_json::{Value, json};
-use slcbeam::case;
 use slcbeam::run::bands::waves::{BlochWave, Lattice};
 use slcbeam::run::response::LinearResponse;
 use slcbeam::study::bands::{bands, coupling_number};
@@ -312,33 +311,88 @@ fn bands_have_files_and_gaps() {
     }
 }
 
-/// Goal: from root to tip a shaken beam of ten cells attenuates most where [E92] does, by as much per cell as two lengths of it differ.
+/// Goal: in the middle of a long shaken beam pressures change from cell to cell as the two waves that bend it: two waves obey
+/// `p_2 = (a + b) p_1 - a b p_0` with their factors a, b.
 #[test]
 fn a_finite_beam_attenuates_as_its_cell() {
-    let dir = TempDir::new().unwrap();
-    let beam = |cells: usize| {
-        let mut case: Value = serde_json::from_str(include_str!("../../cases/metamaterial.json")).unwrap();
-        case["beam"]["length_m"] = (0.008 * cells as f64).into();
-        case["bladders"]["per_row"] = cells.into();
-        let pair = |k: usize| json!({"bladders": [k, -(k as i64)], "ends": ["sealed", "sealed"]});
-        case["network"]["chains"] = (1..=cells).map(pair).collect();
+    let cells = 80_i64;
+    let mut case: Value = serde_json::from_str(include_str!("../../cases/metamaterial.json")).unwrap();
+    case["beam"]["length_m"] = (0.008 * cells as f64).into();
+    case["bladders"]["per_row"] = cells.into();
+    let pair = |k: i64| json!({"bladders": [k, -k], "ends": ["sealed", "sealed"]});
+    case["network"]["chains"] = (1..=cells).map(pair).collect();
+    case.as_object_mut().unwrap().remove("$schema");
+    let case = checked(&case);
+    let outputs = [20, 21, 22, 23].map(|k| format!("bladder_{k}_pressure_pa"));
+    let response = LinearResponse::new(&case, "/ends/root/clamped/u1_m", &outputs, None).unwrap();
+    let p = response.solver().unwrap().at(32.0).unwrap();
+    let determinant = p[0] * p[2] - p[1] * p[1];
+    let [sum, product] = [p[0] * p[3] - p[1] * p[2], p[1] * p[3] - p[2] * p[2]].map(|x| x / determinant);
+    let root = (sum * sum * 0.25 - product).sqrt();
+    let lattice = Lattice::new(&case).unwrap();
+    for factor in [sum * 0.5 + root, sum * 0.5 - root] {
+        let away = waves(&lattice, 32.0)
+            .into_iter()
+            .map(|wave| (wave.factor - factor).norm());
+        let nearest = away.fold(f64::INFINITY, f64::min);
+        assert!(nearest < 1e-6 * factor.norm(), "{factor}: {nearest}");
+    }
+}
+
+/// Goal: neither the scales of unknowns, which follow the drive, nor fine meshes change the waves.
+#[test]
+fn waves_do_not_depend_on_scales_and_cells() {
+    let bending = |lattice: &Lattice, hz: f64| {
+        let own = waves(lattice, hz)
+            .into_iter()
+            .filter(|wave| lattice.energy(wave).bending > 0.5);
+        let numbers = own.map(|wave| wave.wave_number()).filter(|number| number.re > 0.1);
+        numbers.min_by(|a, b| a.im.abs().total_cmp(&b.im.abs())).unwrap()
+    };
+    let driven = |hz: f64| {
+        let set = format!("/ends/root/clamped/u1_m/sine/frequency_hz={hz}");
+        let case = slcbeam::case::load("cases/water-in-tubes.json".as_ref(), &[set]).unwrap();
+        bending(&Lattice::new(&case).unwrap(), 50.0)
+    };
+    let [slow, fast] = [1.0, 10.0].map(driven);
+    assert!((slow - fast).norm() < 1e-8 * slow.norm(), "{slow} {fast}");
+    let mut case = beam(64, &json!({}));
+    case["attachments"] = json!([]);
+    let found = bending(&lattice(&case), 1.0);
+    assert!((found - 0.1 * TAU.sqrt()).norm() < 1e-5, "{found}");
+}
+
+/// Goal: no gap is reported where waves pass: in a uniform beam, also beyond what its mesh resolves, and below the gap of a damped one.
+#[test]
+fn no_gap_is_invented() {
+    let mut uniform = beam(4, &json!({}));
+    uniform["attachments"] = json!([]);
+    let metamaterial: Value = serde_json::from_str(include_str!("../../cases/metamaterial.json")).unwrap();
+    for (mut case, to) in [(uniform.clone(), 60.0), (uniform, 2600.0), (metamaterial, 20.0)] {
         case.as_object_mut().unwrap().remove("$schema");
-        let path = dir.path().join(format!("beam-{cells}.json"));
-        fs::write(&path, case.to_string()).unwrap();
-        case::load(&path, &[]).unwrap()
-    };
-    let at = |cells: usize| {
-        let response = LinearResponse::new(&beam(cells), "/ends/root/clamped/u1_m", &["tip_u1".into()], None);
-        response.unwrap().solver().unwrap().at(32.0).unwrap()[0].norm().ln()
-    };
-    let lattice = Lattice::new(&beam(10)).unwrap();
-    let waves = lattice.waves(Complex::new(0.0, TAU * 32.0));
-    let bending = waves
-        .iter()
-        .filter(|wave| lattice.energy(wave).bending > lattice.energy(wave).stretch);
-    let least = bending
-        .map(|wave| wave.wave_number().im.abs())
-        .fold(f64::INFINITY, f64::min);
-    let per_cell = (at(40) - at(80)) / 40.0;
-    assert!((per_cell - least).abs() < 1e-6 * least, "{per_cell} for {least}");
+        let case = checked(&case);
+        let found = bands(&case, Lattice::new(&case).unwrap(), [1.0, to], 60).unwrap();
+        assert!(found.gaps.is_empty(), "{} to {to}: {:?}", case.name, found.gaps);
+    }
+}
+
+/// Source: transfer matrices of a beam of alternating segments, EI 1 and 4 N m^2: its gaps of bending without losses.
+#[test]
+fn alternating_segments_have_the_gaps_of_their_transfer_matrix() {
+    let mut case = beam(8, &json!({}));
+    case["attachments"] = json!([]);
+    case["mesh"]["segments"] = json!(24);
+    let modulus = |k: i32| if k % 2 == 0 { 1.2e9 } else { 4.8e9 };
+    let span = |k: i32| json!({"segments": 1, "beam": {"young_modulus_pa": modulus(k)}});
+    case["spans"] = (0..24).map(span).collect();
+    // the last span takes what is left of the length
+    (0..23).for_each(|k| case["spans"][k]["length_m"] = json!(1.0 / 24.0));
+    let case = checked(&case);
+    for to in [600.0, 2000.0] {
+        let found = bands(&case, Lattice::new(&case).unwrap(), [1.0, to], 60).unwrap();
+        let gap = found.gaps.iter().find(|gap| !gap.stretch).unwrap();
+        for (edge, exact) in gap.edges.into_iter().zip([243.267, 363.060]) {
+            assert!((edge - exact).abs() < 0.1, "to {to}: {gap:?}");
+        }
+    }
 }

@@ -9,6 +9,8 @@ use crate::run::modes::Linearised;
 const EQUAL: f64 = 1e-8;
 /// Smallest number of cells along a beam: two that are compared, and one beside each.
 const CELLS: usize = 4;
+/// Mesh cells in a segment beyond which no difference formula of the beam reaches.
+const FEWEST: usize = 4;
 /// Segments at each end of a longer beam whose equations the end may change.
 const ENDS: usize = 2;
 
@@ -59,6 +61,10 @@ impl RepeatingCell {
                 },
                 Ok(cell) => _ = in_the_middle.get_or_insert(cell),
                 Err(why) => _ = reason.get_or_insert(why),
+            }
+            // with few mesh cells in a segment its difference formulas reach beyond the adjacent ones
+            if about.system().mesh.cells_per_segment < FEWEST && reason.is_some() {
+                break;
             }
         }
         if let Some(cell) = in_the_middle {

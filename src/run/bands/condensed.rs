@@ -4,6 +4,8 @@ use nalgebra::{Complex, DMatrix, DVector};
 use slcbeam_dense::eigen;
 
 use super::cell::RepeatingCell;
+use crate::sparse::Pattern;
+use crate::sparse::klu::complex::ComplexKlu;
 
 /// Numbers near which factors are searched, in this order: off the unit circle and the real axis.
 const SHIFTS: [Complex<f64>; 3] = [
@@ -13,6 +15,13 @@ const SHIFTS: [Complex<f64>; 3] = [
 ];
 /// Size of `1/(λ - σ)`, relative to the largest, below which a factor is infinite.
 const FINITE: f64 = 1e-12;
+/// Sweeps of the scaling of rows and columns.
+const SWEEPS: usize = 4;
+/// Residual of an equation, relative to its terms, of a wave that needs no further Newton step.
+const RESIDUAL: f64 = 1e-13;
+/// Largest `|ln |λ||` of waves that are refined, and largest relative Newton step.
+const FARTHEST: f64 = 7.0;
+const NEAR: f64 = 0.1;
 /// Newton steps for a factor, and the relative change by which they may move it.
 const STEPS: usize = 4;
 const SETTLED: f64 = 1e-3;
@@ -26,10 +35,49 @@ pub type FactorPair = (Complex<f64>, Vec<Complex<f64>>);
 /// T_0 x + E_r w = 0        w = (T_-/λ + λ T_+)_r x        (λ + (T_- G)_rr + λ² (T_+ G)_rr) w = 0        x = -G E_r w
 /// ```
 pub struct Condensed {
+    /// Entries of `T_-`, `T_0` and `T_+`, with scaled rows and columns, their pattern, and the scales of the columns.
+    entries: Vec<[Complex<f64>; 3]>,
+    pattern: Pattern,
+    columns: Vec<Complex<f64>>,
     /// `G E_r`.
     answers: DMatrix<Complex<f64>>,
     /// `(T_- G)_rr` and `(T_+ G)_rr`.
     parts: [DMatrix<Complex<f64>>; 2],
+}
+
+/// Scales rows and columns of all parts to largest entries near 1 (Ruiz 2001); returns the scales of the columns.
+fn equilibrate(parts: &mut [DMatrix<Complex<f64>>; 3]) -> Vec<Complex<f64>> {
+    let n = parts[0].nrows();
+    let mut columns = vec![Complex::from(1.0); n];
+    for _ in 0..SWEEPS {
+        let mut largest = [vec![0.0_f64; n], vec![0.0_f64; n]];
+        for part in parts.iter() {
+            for ((row, column), x) in (0..n)
+                .flat_map(|column| (0..n).map(move |row| (row, column)))
+                .zip(part.iter())
+            {
+                let size = x.norm();
+                largest[0][row] = largest[0][row].max(size);
+                largest[1][column] = largest[1][column].max(size);
+            }
+        }
+        let by = largest.map(|sizes| {
+            sizes
+                .into_iter()
+                .map(|size| if size > 0.0 { size.sqrt().recip() } else { 1.0 })
+                .collect::<Vec<_>>()
+        });
+        for part in parts.iter_mut() {
+            for ((row, column), x) in (0..n)
+                .flat_map(|column| (0..n).map(move |row| (row, column)))
+                .zip(part.iter_mut())
+            {
+                *x *= by[0][row] * by[1][column];
+            }
+        }
+        columns.iter_mut().zip(&by[1]).for_each(|(scale, by)| *scale *= by);
+    }
+    columns
 }
 
 impl Condensed {
@@ -42,22 +90,24 @@ impl Condensed {
             parts[entry.cell][(entry.row, entry.column)] += s * entry.values[1] + entry.values[0];
             outer[entry.row] |= entry.cell != 1;
         }
-        for row in 0..n {
-            let sizes = parts
-                .iter()
-                .map(|part| part.row(row).iter().map(|x| x.norm_sqr()).fold(0.0, f64::max));
-            let largest = sizes.fold(f64::MIN_POSITIVE, f64::max).sqrt();
-            parts
-                .iter_mut()
-                .for_each(|part| part.row_mut(row).iter_mut().for_each(|x| *x /= largest));
-        }
+        let columns = equilibrate(&mut parts);
         let rows: Vec<usize> = (0..n).filter(|row| outer[*row]).collect();
-        let [before, own, behind] = parts;
-        let answers = own.lu().solve(&DMatrix::identity(n, n).select_columns(&rows))?;
+        let [before, own, behind] = &parts;
+        let answers = own.clone().lu().solve(&DMatrix::identity(n, n).select_columns(&rows))?;
         let finite = answers.iter().all(|x| x.norm().is_finite());
+        let at = |row: usize, column: usize| parts.each_ref().map(|part| part[(row, column)]);
+        let filled =
+            |column: usize| (0..n).filter(move |row| at(*row, column).iter().any(|x| *x != Complex::default()));
+        let rows_of: Vec<Vec<usize>> = (0..n).map(|column| filled(column).collect()).collect();
+        let all = rows_of.iter().enumerate();
         finite.then(|| Self {
+            entries: all
+                .flat_map(|(column, rows)| rows.iter().map(move |row| at(*row, column)))
+                .collect(),
+            pattern: Pattern::from_columns(&rows_of),
             parts: [before, behind].map(|part| part.select_rows(&rows) * &answers),
             answers,
+            columns,
         })
     }
 
@@ -95,9 +145,60 @@ impl Condensed {
         all.retain(|(theta, _)| theta.norm() > FINITE * largest);
         let wave = |(theta, x): (Complex<f64>, Vec<Complex<f64>>)| {
             let (factor, w) = self.refined(shift + theta.inv(), DVector::from_column_slice(&x[..n]));
-            (factor, (&self.answers * w).iter().map(|x| -x).collect())
+            self.whole(factor, &self.answers * -w)
         };
         Some(all.into_iter().map(wave).collect())
+    }
+
+    /// Newton's method in the equations of the cell, where those of the few unknowns w have large rounding errors.
+    fn whole(&self, mut factor: Complex<f64>, x: DVector<Complex<f64>>) -> FactorPair {
+        let mut x: Vec<Complex<f64>> = x.iter().copied().collect();
+        let mut klu = ComplexKlu::new(&self.pattern).ok();
+        for _ in 0..STEPS {
+            let value = |[before, own, behind]: &[Complex<f64>; 3]| before + factor * own + factor * factor * behind;
+            let derivative = |[_, own, behind]: &[Complex<f64>; 3]| own + 2.0 * factor * behind;
+            let values: Vec<Complex<f64>> = self.entries.iter().map(value).collect();
+            let (product, sizes) = self.product(&values, &x);
+            let residual = product
+                .iter()
+                .zip(&sizes)
+                .map(|(residual, size)| residual.norm() / size.max(f64::MIN_POSITIVE));
+            if factor.norm().ln().abs() > FARTHEST || residual.fold(0.0, f64::max) < RESIDUAL {
+                break;
+            }
+            let derivatives: Vec<Complex<f64>> = self.entries.iter().map(derivative).collect();
+            let (mut step, _) = self.product(&derivatives, &x);
+            let solved = klu
+                .as_mut()
+                .is_some_and(|klu| klu.factor(&values).is_ok() && klu.solve(&mut step));
+            let largest = (0..step.len())
+                .max_by(|a, b| step[*a].norm_sqr().total_cmp(&step[*b].norm_sqr()))
+                .unwrap_or(0);
+            let by = x[largest] / step[largest];
+            if !solved || by.norm().is_nan() || by.norm() > NEAR * factor.norm() {
+                break;
+            }
+            factor -= by;
+            let length = step[largest].norm();
+            x = step.into_iter().map(|x| x / length).collect();
+        }
+        (
+            factor,
+            x.iter().zip(&self.columns).map(|(x, scale)| x * scale).collect(),
+        )
+    }
+
+    /// Product with a vector, and the sums of the sizes of its terms.
+    fn product(&self, values: &[Complex<f64>], x: &[Complex<f64>]) -> (Vec<Complex<f64>>, Vec<f64>) {
+        let (mut product, mut sizes) = (vec![Complex::default(); x.len()], vec![0.0; x.len()]);
+        for (column, x) in x.iter().enumerate() {
+            for entry in self.pattern.column(column) {
+                let row = self.pattern.rows[entry] as usize;
+                product[row] += values[entry] * x;
+                sizes[row] += values[entry].norm() * x.norm();
+            }
+        }
+        (product, sizes)
     }
 
     /// Newton's method for a factor and its vector, started from approximations, which are returned if it moves far from them.

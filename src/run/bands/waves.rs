@@ -110,15 +110,6 @@ impl Lattice {
         all
     }
 
-    /// True if a motion of a real wave number has losses: its eigenvalues up to a size [1/s], of waves with certain energies, are damped
-    /// by at least a ratio.
-    pub fn loses(&self, wave_number: f64, size: f64, ratio: f64, of: impl Fn(WaveEnergy) -> bool) -> bool {
-        let all = BlochPencil::new(&self.cell, wave_number).eigenvalues(0.1 * size);
-        let moving = all.iter().filter(|wave| (1e-6 * size..size).contains(&wave.s.norm()));
-        let mut damped = moving.filter(|wave| wave.s.re < -ratio * wave.s.norm());
-        damped.any(|wave| of(self.energy(wave)))
-    }
-
     /// `[E93]` Energies of a wave over a cell:
     ///
     /// ```text

@@ -2,16 +2,16 @@
 
 use std::f64::consts::TAU;
 
+use nalgebra::Complex;
+
 use super::{BandGap, BandMode, BandWave, Meshes, StrongestAttenuation, is_lossless, stretches, waves_at};
 use crate::integrate::halt;
-use crate::run::bands::waves::Lattice;
+use crate::run::bands::waves::{Lattice, WaveEnergy};
 
 /// Attenuation of a gap with losses: 1 dB per cell, in neper.
 const GAP: f64 = std::f64::consts::LN_10 / 20.0;
-/// Wave number at which losses are judged, and damping ratio below which there are none, of oscillations up to so many times the band.
-const LAG: f64 = 1.0;
-const DAMPED: f64 = 1e-8;
-const BEYOND: f64 = 10.0;
+/// Share of a motion in the energy of a wave below which the wave does not count.
+const SHARE: f64 = 1e-3;
 /// Bisections of an edge, and the largest number of steps, in which its bracket doubles, from it to that on another mesh.
 const BISECTIONS: usize = 50;
 const DOUBLINGS: usize = 14;
@@ -24,7 +24,7 @@ const NARROWEST: f64 = 1e-6;
 const STEPS: usize = 40;
 
 /// Waves of one motion over a band.
-pub struct Motion<'a> {
+pub struct BandMotion<'a> {
     meshes: &'a Meshes<'a>,
     /// True for waves that mainly stretch the beam, false for those that bend it.
     stretch: bool,
@@ -53,7 +53,7 @@ struct GapEdge {
     error: Option<f64>,
 }
 
-impl<'a> Motion<'a> {
+impl<'a> BandMotion<'a> {
     /// Waves of a motion among those of samples.
     pub fn new(
         meshes: &'a Meshes<'a>,
@@ -62,14 +62,14 @@ impl<'a> Motion<'a> {
         frequencies: &'a [f64],
         waves: &[Vec<BandWave>],
     ) -> Self {
-        let top = TAU * BEYOND * frequencies.last().copied().unwrap_or(0.0);
-        let lossless = !meshes
-            .own
-            .loses(LAG, top, DAMPED, |energy| stretches(energy) == stretch);
-        let least = |waves: &Vec<BandWave>| {
-            let own = waves.iter().filter(|wave| stretches(wave.energy) == stretch);
-            Least::of_numbers(own.map(|wave| wave.on_mesh), lossless)
+        let number = |waves: &Vec<BandWave>| {
+            let own = waves.iter().filter(|wave| belongs(wave.energy, stretch));
+            least(own.map(|wave| wave.on_mesh))
         };
+        let numbers: Vec<Option<Complex<f64>>> = waves.iter().map(number).collect();
+        let passing = || numbers.iter().flatten().filter(|number| number.im.abs() <= GAP);
+        // a motion has losses if most waves that pass have
+        let lossless = 2 * passing().filter(|number| is_lossless(**number)).count() > passing().count();
         Self {
             meshes,
             stretch,
@@ -77,17 +77,17 @@ impl<'a> Motion<'a> {
             standing: standing
                 .iter()
                 .copied()
-                .filter(|mode| stretches(mode.energy) == stretch)
+                .filter(|mode| belongs(mode.energy, stretch))
                 .collect(),
             frequencies,
-            least: waves.iter().map(least).collect(),
+            least: numbers.into_iter().map(|number| Least::new(number, lossless)).collect(),
         }
     }
 
     fn at(&self, lattice: &Lattice, hz: f64) -> Least {
         let waves = waves_at(lattice, hz).into_iter();
-        let own = waves.filter(|wave| stretches(lattice.energy(wave)) == self.stretch);
-        Least::of_numbers(own.map(|wave| wave.wave_number()), self.lossless)
+        let own = waves.filter(|wave| belongs(lattice.energy(wave), self.stretch));
+        Least::new(least(own.map(|wave| wave.wave_number())), self.lossless)
     }
 
     /// Largest attenuation near a sample of a local maximum.
@@ -210,17 +210,28 @@ impl GapEdge {
 }
 
 impl Least {
-    fn of_numbers(numbers: impl Iterator<Item = nalgebra::Complex<f64>>, lossless: bool) -> Self {
-        let least = numbers.min_by(|a, b| a.im.abs().total_cmp(&b.im.abs()));
+    /// Without a wave nothing is known of a gap.
+    fn new(number: Option<Complex<f64>>, lossless: bool) -> Self {
+        let passes = |number: Complex<f64>| {
+            if lossless {
+                is_lossless(number)
+            } else {
+                number.im.abs() <= GAP
+            }
+        };
         Self {
-            attenuation: least.map_or(f64::INFINITY, |least| least.im.abs()),
-            passes: least.is_some_and(|least| {
-                if lossless {
-                    is_lossless(least)
-                } else {
-                    least.im.abs() <= GAP
-                }
-            }),
+            attenuation: number.map_or(f64::INFINITY, |number| number.im.abs()),
+            passes: number.is_none_or(passes),
         }
     }
+}
+
+/// Least attenuated of wave numbers.
+fn least(numbers: impl Iterator<Item = Complex<f64>>) -> Option<Complex<f64>> {
+    numbers.min_by(|a, b| a.im.abs().total_cmp(&b.im.abs()))
+}
+
+/// True for a wave that mainly stretches the beam, or mainly bends it, and does not only move fluid.
+fn belongs(energy: WaveEnergy, stretch: bool) -> bool {
+    stretches(energy) == stretch && energy.bending.max(energy.stretch) > SHARE
 }

@@ -12,7 +12,7 @@ use std::f64::consts::{PI, TAU};
 
 use nalgebra::Complex;
 
-use self::gaps::Motion;
+use self::gaps::BandMotion;
 use self::sample::Sample;
 use super::refine::has_cells_along_bladders;
 use crate::case::Case;
@@ -157,7 +157,7 @@ pub fn bands(case: &Case, lattice: Lattice, band: [f64; 2], points: usize) -> Re
     let waves: Vec<Vec<BandWave>> = samples.iter().map(|sample| sample.extrapolated(reciprocal)).collect();
     let mut gaps = vec![];
     let strongest = [false, true].map(|stretch| {
-        let motion = Motion::new(&all, stretch, &standing, &frequencies, &waves);
+        let motion = BandMotion::new(&all, stretch, &standing, &frequencies, &waves);
         gaps.extend(motion.gaps());
         motion.strongest()
     });
@@ -192,7 +192,8 @@ fn meshes(case: &Case, fourth: bool) -> Result<Vec<(Case, f64)>> {
 fn samples(band: [f64; 2], points: usize, standing: &[BandMode]) -> Vec<f64> {
     let step = (band[1] - band[0]) / (points.max(2) - 1) as f64;
     let mut all: Vec<f64> = (0..points).map(|k| band[0] + k as f64 * step).collect();
-    let at: Vec<f64> = standing.iter().map(|mode| mode.s.im / TAU).collect();
+    let mut at: Vec<f64> = standing.iter().map(|mode| mode.on_mesh.im / TAU).collect();
+    at.sort_by(f64::total_cmp);
     all.extend(at.windows(2).map(|pair| 0.5 * (pair[0] + pair[1])));
     all.retain(|hz| (band[0]..=band[1]).contains(hz));
     all.push(band[1]);
@@ -248,27 +249,43 @@ impl Meshes<'_> {
                 .iter()
                 .map(|(other, by)| (modes_at(other, wave_number, wide), *by))
                 .collect();
-            let extrapolated = |mode: BandMode| {
+            let own = modes_at(self.own, wave_number, band);
+            let partners: Vec<(Vec<Option<BandMode>>, f64)> =
+                others.iter().map(|(other, by)| (partners(&own, other), *by)).collect();
+            let extrapolated = |(k, mode): (usize, &BandMode)| {
                 let (mut s, mut error) = (mode.s, (!others.is_empty()).then_some(0.0));
-                for (modes, by) in &others {
-                    let near = modes
-                        .iter()
-                        .min_by(|a, b| (a.s - mode.s).norm().total_cmp(&(b.s - mode.s).norm()));
-                    let near = near.filter(|near| (near.s - mode.s).norm() < SAME * mode.s.norm());
-                    error = error.zip(near).map(|(error, near)| {
-                        let change = (near.s - mode.s) * *by;
+                for (partners, by) in &partners {
+                    error = error.zip(partners[k]).map(|(error, partner)| {
+                        let change = (partner.s - mode.s) * *by;
                         s += change;
                         error + change.norm()
                     });
                 }
-                let s = if error.is_some() { s } else { mode.s };
-                BandMode { s, error, ..mode }
+                let known = error.filter(|error| *error < SAME * mode.s.norm() && s.im > 0.0);
+                let s = if known.is_some() { s } else { mode.s };
+                BandMode {
+                    s,
+                    error: known,
+                    ..*mode
+                }
             };
-            all.extend(modes_at(self.own, wave_number, band).into_iter().map(extrapolated));
+            all.extend(own.iter().enumerate().map(extrapolated));
         }
         all.sort_by(|a, b| a.s.im.total_cmp(&b.s.im));
         all
     }
+}
+
+/// Oscillations of another mesh that belong to those of a mesh, each to at most one: the nearest of the same motion.
+fn partners(own: &[BandMode], others: &[BandMode]) -> Vec<Option<BandMode>> {
+    let mut left: Vec<&BandMode> = others.iter().collect();
+    let partner = |mode: &BandMode| {
+        let alike = |other: &BandMode| stretches(other.energy) == stretches(mode.energy);
+        let near = left.iter().enumerate().filter(|(_, other)| alike(other));
+        let (place, _) = near.min_by(|a, b| (a.1.s - mode.s).norm().total_cmp(&(b.1.s - mode.s).norm()))?;
+        Some(*left.remove(place))
+    };
+    own.iter().map(partner).collect()
 }
 
 fn stretches(energy: WaveEnergy) -> bool {

@@ -62,11 +62,17 @@ impl Sample {
             true => (smooth.sqrt().asin() * 2.0).conj(),
             false => Complex::new(-smooth.arg(), -smooth.norm().ln()),
         };
+        let number_on_mesh = wave.wave_number();
+        let sign = if is_lossless(number_on_mesh) {
+            1.0
+        } else {
+            number_on_mesh.re.signum()
+        };
         let folded = |number: Complex<f64>| match reciprocal {
-            true => Complex::new(number.re.abs(), number.im.abs()),
+            true => Complex::new(number.re.abs() * sign, number.im.abs()),
             false => number,
         };
-        let on_mesh = folded(wave.wave_number());
+        let on_mesh = folded(number_on_mesh);
         let extrapolated = folded(number(whole));
         BandWave {
             frequency_hz: self.hz,
