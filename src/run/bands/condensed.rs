@@ -26,8 +26,17 @@ const NEAR: f64 = 0.1;
 const STEPS: usize = 4;
 const SETTLED: f64 = 1e-3;
 
-/// A factor λ with the unknowns of the cell.
-pub type FactorPair = (Complex<f64>, Vec<Complex<f64>>);
+/// A factor λ.
+#[derive(Clone, Debug, PartialEq)]
+pub struct BlochFactor {
+    /// λ.
+    pub factor: Complex<f64>,
+    /// Bound of its rounding errors, to first order, over |λ|: with the left vector y
+    /// `max(residual, ε) |y|·|T| |x| / |λ yᴴ T' x|`.
+    pub rounding: f64,
+    /// Unknowns of the cell.
+    pub x: Vec<Complex<f64>>,
+}
 
 /// Let r be the equations that contain unknowns of other cells, and w what these contribute to them. With `G = T_0⁻¹`
 ///
@@ -126,7 +135,7 @@ impl Condensed {
     /// Factors λ of the finite waves, with all unknowns of the cell. None if the equations are singular for every λ.
     ///
     /// With `θ = 1/(λ - σ)` the polynomial is `θ² P(σ) + θ P'(σ) + (T_+ G)_rr`, whose companion matrix has an ordinary eigenvalue problem.
-    pub fn waves(&self) -> Option<Vec<FactorPair>> {
+    pub fn waves(&self) -> Option<Vec<BlochFactor>> {
         let n = self.answers.ncols();
         let (shift, companion) = SHIFTS.iter().find_map(|&shift| {
             let [value, derivative] = self.at(shift);
@@ -151,7 +160,7 @@ impl Condensed {
     }
 
     /// Newton's method in the equations of the cell, where those of the few unknowns w have large rounding errors.
-    fn whole(&self, mut factor: Complex<f64>, x: DVector<Complex<f64>>) -> FactorPair {
+    fn whole(&self, mut factor: Complex<f64>, x: DVector<Complex<f64>>) -> BlochFactor {
         let mut x: Vec<Complex<f64>> = x.iter().copied().collect();
         let mut klu = ComplexKlu::new(&self.pattern).ok();
         for _ in 0..STEPS {
@@ -182,10 +191,36 @@ impl Condensed {
             let length = step[largest].norm();
             x = step.into_iter().map(|x| x / length).collect();
         }
-        (
+        BlochFactor {
             factor,
-            x.iter().zip(&self.columns).map(|(x, scale)| x * scale).collect(),
-        )
+            rounding: klu.map_or(f64::INFINITY, |klu| self.rounding(klu, factor, &x)),
+            x: x.iter().zip(&self.columns).map(|(x, scale)| x * scale).collect(),
+        }
+    }
+
+    /// Bound of the relative error of a factor by the residual, but at least by rounding errors.
+    fn rounding(&self, mut klu: ComplexKlu, factor: Complex<f64>, x: &[Complex<f64>]) -> f64 {
+        // beside the factor, where the matrix is not quite singular
+        let beside = factor * (1.0 + 1e-13);
+        let value = |[before, own, behind]: &[Complex<f64>; 3]| before + beside * own + beside * beside * behind;
+        let derivative = |[_, own, behind]: &[Complex<f64>; 3]| own + 2.0 * beside * behind;
+        let values: Vec<Complex<f64>> = self.entries.iter().map(value).collect();
+        let (product, sizes) = self.product(&values, x);
+        let residual = product
+            .iter()
+            .zip(&sizes)
+            .map(|(residual, size)| residual.norm() / size.max(f64::MIN_POSITIVE));
+        let residual = residual.fold(f64::EPSILON, f64::max);
+        let mut left = x.to_vec();
+        if klu.factor(&values).is_err() || !klu.solve_adjoint(&mut left) {
+            return f64::INFINITY;
+        }
+        let derivatives: Vec<Complex<f64>> = self.entries.iter().map(derivative).collect();
+        let (change, _) = self.product(&derivatives, x);
+        let change: Complex<f64> = left.iter().zip(&change).map(|(y, change)| y.conj() * change).sum();
+        let terms: f64 = left.iter().zip(&sizes).map(|(y, size)| y.norm() * size).sum();
+        let bound = residual * terms / (change.norm() * factor.norm());
+        if bound.is_finite() { bound } else { f64::INFINITY }
     }
 
     /// Product with a vector, and the sums of the sizes of its terms.

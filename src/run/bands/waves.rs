@@ -4,7 +4,7 @@ use nalgebra::{Complex, DMatrix, DVector};
 use slcbeam_dense::eigen;
 
 use super::cell::RepeatingCell;
-use super::condensed::Condensed;
+use super::condensed::{BlochFactor, Condensed};
 use crate::case::Case;
 use crate::error::Result;
 use crate::run::modes::{Linearised, Shapes, linearise};
@@ -30,6 +30,8 @@ pub struct BlochWave {
     pub s: Complex<f64>,
     /// λ.
     pub factor: Complex<f64>,
+    /// Bound of the rounding error of λ, relative to it; 0 for a given λ.
+    pub rounding: f64,
     /// Scaled unknowns of the cell.
     x: Vec<Complex<f64>>,
 }
@@ -93,7 +95,12 @@ impl Lattice {
         let found = Condensed::new(&self.cell, s)
             .and_then(|condensed| condensed.waves())
             .unwrap_or_default();
-        let wave = |(factor, x)| BlochWave { s, factor, x };
+        let wave = |found: BlochFactor| BlochWave {
+            s,
+            factor: found.factor,
+            rounding: found.rounding,
+            x: found.x,
+        };
         found.into_iter().map(wave).collect()
     }
 
@@ -196,6 +203,7 @@ impl BlochPencil {
         let wave = |(theta, x): (Complex<f64>, Vec<Complex<f64>>)| BlochWave {
             s: shift - theta.inv(),
             factor: self.factor,
+            rounding: 0.0,
             x: (&operator * DVector::from_vec(x)).iter().copied().collect(),
         };
         all.into_iter().map(wave).collect()

@@ -62,14 +62,17 @@ impl<'a> BandMotion<'a> {
         frequencies: &'a [f64],
         waves: &[Vec<BandWave>],
     ) -> Self {
-        let number = |waves: &Vec<BandWave>| {
+        let number = |waves: &Vec<BandWave>| -> Option<(Complex<f64>, f64)> {
             let own = waves.iter().filter(|wave| belongs(wave.energy, stretch));
-            least(own.map(|wave| wave.on_mesh))
+            least(own.map(|wave| (wave.on_mesh, wave.rounding)))
         };
-        let numbers: Vec<Option<Complex<f64>>> = waves.iter().map(number).collect();
-        let passing = || numbers.iter().flatten().filter(|number| number.im.abs() <= GAP);
+        let numbers: Vec<Option<(Complex<f64>, f64)>> = waves.iter().map(number).collect();
+        let passing = || numbers.iter().flatten().filter(|(number, _)| number.im.abs() <= GAP);
         // a motion has losses if most waves that pass have
-        let lossless = 2 * passing().filter(|number| is_lossless(**number)).count() > passing().count();
+        let lossless = 2 * passing()
+            .filter(|(number, rounding)| is_lossless(*number, *rounding))
+            .count()
+            > passing().count();
         Self {
             meshes,
             stretch,
@@ -87,7 +90,10 @@ impl<'a> BandMotion<'a> {
     fn at(&self, lattice: &Lattice, hz: f64) -> Least {
         let waves = waves_at(lattice, hz).into_iter();
         let own = waves.filter(|wave| belongs(lattice.energy(wave), self.stretch));
-        Least::new(least(own.map(|wave| wave.wave_number())), self.lossless)
+        Least::new(
+            least(own.map(|wave| (wave.wave_number(), wave.rounding))),
+            self.lossless,
+        )
     }
 
     /// Largest attenuation near a sample of a local maximum.
@@ -210,25 +216,22 @@ impl GapEdge {
 }
 
 impl Least {
-    /// Without a wave nothing is known of a gap.
-    fn new(number: Option<Complex<f64>>, lossless: bool) -> Self {
-        let passes = |number: Complex<f64>| {
-            if lossless {
-                is_lossless(number)
-            } else {
-                number.im.abs() <= GAP
-            }
+    /// Of a wave number with its rounding error. Without a wave nothing is known of a gap.
+    fn new(number: Option<(Complex<f64>, f64)>, lossless: bool) -> Self {
+        let passes = |(number, rounding): (Complex<f64>, f64)| match lossless {
+            true => is_lossless(number, rounding),
+            false => number.im.abs() <= GAP,
         };
         Self {
-            attenuation: number.map_or(f64::INFINITY, |number| number.im.abs()),
+            attenuation: number.map_or(f64::INFINITY, |(number, _)| number.im.abs()),
             passes: number.is_none_or(passes),
         }
     }
 }
 
-/// Least attenuated of wave numbers.
-fn least(numbers: impl Iterator<Item = Complex<f64>>) -> Option<Complex<f64>> {
-    numbers.min_by(|a, b| a.im.abs().total_cmp(&b.im.abs()))
+/// Least attenuated of wave numbers with rounding errors.
+fn least(numbers: impl Iterator<Item = (Complex<f64>, f64)>) -> Option<(Complex<f64>, f64)> {
+    numbers.min_by(|a, b| a.0.im.abs().total_cmp(&b.0.im.abs()))
 }
 
 /// True for a wave that mainly stretches the beam, or mainly bends it, and does not only move fluid.

@@ -25,6 +25,8 @@ use crate::run::bands::waves::{BlochWave, Lattice, WaveEnergy};
 const MOST: f64 = 7.0;
 /// Attenuation [neper per cell] below which a wave passes without loss: relative to its phase lag, and at least.
 const LOSSLESS: (f64, f64) = (1e-7, 1e-9);
+/// Rounding error of a wave number, relative to it, above which a wave is left out.
+const ROUNDING: f64 = 0.01;
 /// Largest relative difference of a wave on two meshes.
 const SAME: f64 = 0.25;
 /// Median over the samples of the relative difference of waves in both directions below which a cell is reciprocal.
@@ -44,6 +46,8 @@ pub struct BandWave {
     pub wave_number: Complex<f64>,
     /// The same on the mesh.
     pub on_mesh: Complex<f64>,
+    /// Bound of its rounding error.
+    pub rounding: f64,
     /// Estimated error of the wave number on the mesh; unknown if another mesh has no such wave.
     pub error: Option<f64>,
     /// Shares of its energy.
@@ -150,6 +154,13 @@ pub fn bands(case: &Case, lattice: Lattice, band: [f64; 2], points: usize) -> Re
     let standing = all.standing(band);
     let frequencies = samples(band, points, &standing);
     let samples = in_parts(&frequencies, |hz| all.at(hz))?;
+    let lost = samples.iter().filter(|sample| sample.lost).count();
+    if lost > 0 {
+        unknown.push(format!(
+            "waves at {lost} of {} frequencies: rounding errors hide them in so short cells. Use fewer /mesh/cells_per_segment, or a higher --from",
+            samples.len()
+        ));
+    }
     let mut asymmetries: Vec<f64> = samples.iter().map(Sample::asymmetry).collect();
     asymmetries.sort_by(f64::total_cmp);
     // single samples beside a resonance may have large rounding errors
@@ -228,14 +239,19 @@ struct Meshes<'a> {
 impl Meshes<'_> {
     /// Waves at a frequency.
     fn at(&self, hz: f64) -> Sample {
-        let waves = |lattice: &Lattice| waves_at(lattice, hz);
+        let mut own = self.own.waves(Complex::new(0.0, TAU * hz));
+        own.retain(|wave| wave.wave_number().im.abs() <= MOST);
+        let all = own.len();
+        own.retain(|wave| !is_rounded(wave));
         Sample {
             hz,
-            own: waves(self.own)
-                .into_iter()
-                .map(|wave| (self.own.energy(&wave), wave))
+            lost: own.len() < all,
+            own: own.into_iter().map(|wave| (self.own.energy(&wave), wave)).collect(),
+            others: self
+                .others
+                .iter()
+                .map(|(other, by)| (waves_at(other, hz), *by))
                 .collect(),
-            others: self.others.iter().map(|(other, by)| (waves(other), *by)).collect(),
         }
     }
 
@@ -292,15 +308,21 @@ fn stretches(energy: WaveEnergy) -> bool {
     energy.stretch > energy.bending
 }
 
+/// Waves at a frequency, without those of which rounding errors leave no two digits.
 fn waves_at(lattice: &Lattice, hz: f64) -> Vec<BlochWave> {
     let mut waves = lattice.waves(Complex::new(0.0, TAU * hz));
-    waves.retain(|wave| wave.wave_number().im.abs() <= MOST);
+    waves.retain(|wave| wave.wave_number().im.abs() <= MOST && !is_rounded(wave));
     waves
 }
 
-/// True if a wave with this phase lag and attenuation passes without loss.
-fn is_lossless(number: Complex<f64>) -> bool {
-    number.im.abs() <= (LOSSLESS.0 * number.re.abs()).max(LOSSLESS.1)
+/// True if rounding errors leave no two digits of a wave number.
+fn is_rounded(wave: &BlochWave) -> bool {
+    wave.rounding > ROUNDING * wave.wave_number().norm()
+}
+
+/// True if a wave with this phase lag and attenuation, with a rounding error, passes without loss.
+fn is_lossless(number: Complex<f64>, rounding: f64) -> bool {
+    number.im.abs() <= (LOSSLESS.0 * number.re.abs()).max(LOSSLESS.1).max(rounding)
 }
 
 /// Oscillations of a wave number in a band [Hz].

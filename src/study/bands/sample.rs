@@ -9,6 +9,8 @@ use crate::run::bands::waves::{BlochWave, WaveEnergy};
 pub struct Sample {
     /// Frequency [Hz].
     pub hz: f64,
+    /// True if rounding errors hide waves.
+    pub lost: bool,
     /// Waves of the case's mesh.
     pub own: Vec<(WaveEnergy, BlochWave)>,
     /// Waves of other meshes, with the factors of the differences.
@@ -31,12 +33,12 @@ impl Sample {
 
     /// Waves with extrapolated wave numbers, the least attenuated first; of each wave and its reverse only that toward the tip.
     pub fn extrapolated(&self, reciprocal: bool) -> Vec<BandWave> {
-        let toward_tip = |number: Complex<f64>| match is_lossless(number) {
+        let toward_tip = |number: Complex<f64>, rounding: f64| match is_lossless(number, rounding) {
             true => number.re >= 0.0,
             false => number.im > 0.0,
         };
         let own = self.own.iter();
-        let own = own.filter(|(_, wave)| !reciprocal || toward_tip(wave.wave_number()));
+        let own = own.filter(|(_, wave)| !reciprocal || toward_tip(wave.wave_number(), wave.rounding));
         let mut all: Vec<BandWave> = own.map(|(energy, wave)| self.wave(wave, *energy, reciprocal)).collect();
         // strongly attenuated waves that only one mesh has are those of its difference formulas
         all.retain(|wave| self.others.is_empty() || wave.error.is_some() || wave.on_mesh.im.abs() < 1.0);
@@ -63,7 +65,7 @@ impl Sample {
             false => Complex::new(-smooth.arg(), -smooth.norm().ln()),
         };
         let number_on_mesh = wave.wave_number();
-        let sign = if is_lossless(number_on_mesh) {
+        let sign = if is_lossless(number_on_mesh, wave.rounding) {
             1.0
         } else {
             number_on_mesh.re.signum()
@@ -78,7 +80,8 @@ impl Sample {
             frequency_hz: self.hz,
             wave_number: if known { extrapolated } else { on_mesh },
             on_mesh,
-            error: known.then(|| (extrapolated - on_mesh).norm()),
+            rounding: wave.rounding,
+            error: known.then(|| (extrapolated - on_mesh).norm() + wave.rounding),
             energy,
         }
     }
