@@ -32,7 +32,7 @@ pub struct BlochFactor {
     /// λ.
     pub factor: Complex<f64>,
     /// Bound of its rounding errors, to first order, over |λ|: with the left vector y
-    /// `max(residual, ε) |y|·|T| |x| / |λ yᴴ T' x|`.
+    /// `|y|·(|T x| + ε |T| |x|) / |λ yᴴ T' x|`.
     pub rounding: f64,
     /// Unknowns of the cell.
     pub x: Vec<Complex<f64>>,
@@ -168,11 +168,9 @@ impl Condensed {
             let derivative = |[_, own, behind]: &[Complex<f64>; 3]| own + 2.0 * factor * behind;
             let values: Vec<Complex<f64>> = self.entries.iter().map(value).collect();
             let (product, sizes) = self.product(&values, &x);
-            let residual = product
-                .iter()
-                .zip(&sizes)
-                .map(|(residual, size)| residual.norm() / size.max(f64::MIN_POSITIVE));
-            if factor.norm().ln().abs() > FARTHEST || residual.fold(0.0, f64::max) < RESIDUAL {
+            let residual = product.iter().map(|residual| residual.norm()).fold(0.0, f64::max);
+            let terms = sizes.iter().copied().fold(f64::MIN_POSITIVE, f64::max);
+            if factor.norm().ln().abs() > FARTHEST || residual < RESIDUAL * terms {
                 break;
             }
             let derivatives: Vec<Complex<f64>> = self.entries.iter().map(derivative).collect();
@@ -206,11 +204,6 @@ impl Condensed {
         let derivative = |[_, own, behind]: &[Complex<f64>; 3]| own + 2.0 * beside * behind;
         let values: Vec<Complex<f64>> = self.entries.iter().map(value).collect();
         let (product, sizes) = self.product(&values, x);
-        let residual = product
-            .iter()
-            .zip(&sizes)
-            .map(|(residual, size)| residual.norm() / size.max(f64::MIN_POSITIVE));
-        let residual = residual.fold(f64::EPSILON, f64::max);
         let mut left = x.to_vec();
         if klu.factor(&values).is_err() || !klu.solve_adjoint(&mut left) {
             return f64::INFINITY;
@@ -218,8 +211,12 @@ impl Condensed {
         let derivatives: Vec<Complex<f64>> = self.entries.iter().map(derivative).collect();
         let (change, _) = self.product(&derivatives, x);
         let change: Complex<f64> = left.iter().zip(&change).map(|(y, change)| y.conj() * change).sum();
-        let terms: f64 = left.iter().zip(&sizes).map(|(y, size)| y.norm() * size).sum();
-        let bound = residual * terms / (change.norm() * factor.norm());
+        let errors = product
+            .iter()
+            .zip(&sizes)
+            .map(|(residual, size)| residual.norm() + f64::EPSILON * size);
+        let terms: f64 = left.iter().zip(errors).map(|(y, error)| y.norm() * error).sum();
+        let bound = terms / (change.norm() * factor.norm());
         if bound.is_finite() { bound } else { f64::INFINITY }
     }
 
