@@ -12,6 +12,7 @@
 //! | `gauss` | Gauss quadrature |
 //! | `ramp` | ramp with a smooth start |
 //! | [`regression`], [`student_t`] | least squares with covariance, intervals by Student's distribution |
+//! | [`golden_section`] | search for a maximum |
 //! | [`levenberg`] | bounded nonlinear least squares |
 //! | [`bayesian_least_squares`] | Bayesian linear least squares, observability |
 //! | [`sqp`] | minimization with bounds and inequalities |
@@ -23,6 +24,7 @@ pub mod angle;
 pub mod bayesian_least_squares;
 pub mod dual;
 pub mod gauss;
+pub mod golden_section;
 pub mod kernels;
 pub mod krylov;
 pub mod levenberg;

@@ -22,3 +22,15 @@ pub mod sweep;
 pub mod target;
 pub mod uncertain;
 pub mod verify;
+
+use crate::error::Result;
+use crate::integrate::halt;
+use crate::numerics::threads;
+
+/// Results of a list, computed in two threads, each of which computes one half.
+fn in_halves<T: Sync, R: Send>(all: &[T], part: impl Fn(&[T]) -> Result<Vec<R>> + Sync) -> Result<Vec<R>> {
+    let (first, second) = all.split_at(all.len() / 2);
+    let heard = &halt::heard();
+    let (first, second) = threads::both(|| heard.during(|| part(first)), || part(second));
+    Ok([first?, second?].into_iter().flatten().collect())
+}

@@ -2,11 +2,11 @@
 
 use nalgebra::Complex;
 
-use super::refine::has_cells_along_bladders;
+use super::in_halves;
+use super::refine::finer_along_bladders;
 use crate::case::Case;
 use crate::error::{Error, Result};
-use crate::integrate::halt;
-use crate::numerics::threads;
+use crate::numerics::golden_section;
 use crate::run::modes;
 use crate::run::record::HistoryColumn;
 use crate::run::response::{Frequencies, LinearResponse};
@@ -179,11 +179,7 @@ fn meshes(case: &Case) -> Result<Vec<(Case, f64)>> {
         other.mesh.cells_per_segment *= 2;
         all.push((other, OF_TWICE));
     }
-    if has_cells_along_bladders(case)? {
-        let mut other = case.clone();
-        other.mesh.cells_per_bladder *= 2;
-        all.push((other, OF_FLUID));
-    }
+    all.extend(finer_along_bladders(case)?.map(|other| (other, OF_FLUID)));
     Ok(all)
 }
 
@@ -267,18 +263,10 @@ pub fn growing(case: &Case, at: Option<f64>, response: &LinearResponse) -> std::
 }
 
 fn all_at(response: &LinearResponse, frequencies: &[f64]) -> Result<Vec<Vec<Complex<f64>>>> {
-    let halves = frequencies.split_at(frequencies.len() / 2);
-    let part = |part: &[f64]| -> Result<Vec<_>> {
+    in_halves(frequencies, |part| {
         let mut solver = response.solver()?;
         part.iter().map(|f| solver.at(*f)).collect()
-    };
-    let heard = &halt::heard();
-    let (first, second) = std::thread::scope(|scope| {
-        let first = threads::begin(scope, || heard.during(|| part(halves.0)));
-        let second = part(halves.1);
-        (first.join(), second)
-    });
-    Ok(first?.into_iter().chain(second?).collect())
+    })
 }
 
 /// Frequencies [Hz], and values of all outputs at each.
@@ -332,7 +320,6 @@ fn peaks(
     values: &[Complex<f64>],
     poles: &[BandPole],
 ) -> Result<Vec<BandPeak>> {
-    let golden = 0.5 * (5.0_f64.sqrt() - 1.0);
     let largest = values.iter().map(|value| value.norm()).fold(0.0, f64::max);
     let mut all = vec![];
     for k in 1..frequencies.len().saturating_sub(1) {
@@ -342,21 +329,8 @@ fn peaks(
             continue;
         }
         let mut at = |f: f64| -> Result<Complex<f64>> { Ok(solver.at(f)?[place]) };
-        let [mut low, mut high] = [frequencies[k - 1], frequencies[k + 1]];
-        let mut inner = [high - golden * (high - low), low + golden * (high - low)];
-        let mut found = [at(inner[0])?, at(inner[1])?];
-        for _ in 0..STEPS {
-            if found[0].norm() > found[1].norm() {
-                high = inner[1];
-                inner = [high - golden * (high - low), inner[0]];
-                found = [at(inner[0])?, found[0]];
-            } else {
-                low = inner[0];
-                inner = [inner[1], low + golden * (high - low)];
-                found = [found[1], at(inner[1])?];
-            }
-        }
-        let frequency_hz = 0.5 * (low + high);
+        let around = [frequencies[k - 1], frequencies[k + 1]];
+        let frequency_hz = golden_section::maximum(around, STEPS, |f| Ok::<_, Error>(at(f)?.norm()))?;
         let s = std::f64::consts::TAU * frequency_hz;
         let nearest = poles
             .iter()

@@ -1,11 +1,13 @@
 //! Gaps: frequencies at which no wave of a motion passes.
 
+use std::convert::Infallible;
 use std::f64::consts::TAU;
 
 use nalgebra::Complex;
 
 use super::{BandGap, BandMode, BandWave, Meshes, StrongestAttenuation, is_lossless, stretches, waves_at};
 use crate::integrate::halt;
+use crate::numerics::golden_section;
 use crate::run::bands::waves::{Lattice, WaveEnergy};
 
 /// Attenuation of a gap with losses: 1 dB per cell, in neper.
@@ -98,18 +100,10 @@ impl<'a> BandMotion<'a> {
 
     /// Largest attenuation near a sample of a local maximum.
     fn refined(&self, sample: usize) -> StrongestAttenuation {
-        let golden = 0.5 * (5.0_f64.sqrt() - 1.0);
         let last = self.frequencies.len() - 1;
         let at = |hz: f64| self.at(self.meshes.own, hz).attenuation;
-        let [mut low, mut high] = [sample.saturating_sub(1), (sample + 1).min(last)].map(|k| self.frequencies[k]);
-        for _ in 0..STEPS {
-            let [left, right] = [high - golden * (high - low), low + golden * (high - low)];
-            match at(left) > at(right) {
-                true => high = right,
-                false => low = left,
-            }
-        }
-        let middle = 0.5 * (low + high);
+        let around = [sample.saturating_sub(1), (sample + 1).min(last)].map(|k| self.frequencies[k]);
+        let Ok(middle) = golden_section::maximum(around, STEPS, |hz| Ok::<_, Infallible>(at(hz)));
         let all = [
             (middle, at(middle)),
             (self.frequencies[sample], self.least[sample].attenuation),

@@ -14,11 +14,11 @@ use nalgebra::Complex;
 
 use self::gaps::BandMotion;
 use self::sample::Sample;
-use super::refine::has_cells_along_bladders;
+use super::in_halves;
+use super::refine::finer_along_bladders;
 use crate::case::Case;
 use crate::error::{Error, Result};
 use crate::integrate::halt;
-use crate::numerics::threads;
 use crate::run::bands::waves::{BlochWave, Lattice, WaveEnergy};
 
 /// Attenuation [neper per cell] above which a wave is left out.
@@ -153,7 +153,13 @@ pub fn bands(case: &Case, lattice: Lattice, band: [f64; 2], points: usize) -> Re
     let all = Meshes { own: &lattice, others };
     let standing = all.standing(band);
     let frequencies = samples(band, points, &standing);
-    let samples = in_parts(&frequencies, |hz| all.at(hz))?;
+    let at = |hz: &f64| match halt::asked() {
+        true => Err(Error::Interrupted(
+            "interrupted before the waves were computed; nothing is written".into(),
+        )),
+        false => Ok(all.at(*hz)),
+    };
+    let samples = in_halves(&frequencies, |part| part.iter().map(at).collect())?;
     let lost = samples.iter().filter(|sample| sample.lost).count();
     if lost > 0 {
         unknown.push(format!(
@@ -191,11 +197,7 @@ fn meshes(case: &Case, fourth: bool) -> Result<Vec<(Case, f64)>> {
     let mut finer = case.clone();
     finer.mesh.cells_per_segment *= 2;
     let mut all = vec![(finer, OF_BEAM[usize::from(fourth)])];
-    if has_cells_along_bladders(case)? {
-        let mut finer = case.clone();
-        finer.mesh.cells_per_bladder *= 2;
-        all.push((finer, OF_BLADDERS));
-    }
+    all.extend(finer_along_bladders(case)?.map(|finer| (finer, OF_BLADDERS)));
     Ok(all)
 }
 
@@ -211,23 +213,6 @@ fn samples(band: [f64; 2], points: usize, standing: &[BandMode]) -> Vec<f64> {
     all.sort_by(f64::total_cmp);
     all.dedup_by(|a, b| *a <= *b * (1.0 + 1e-9));
     all
-}
-
-/// Applies a function to samples in two threads.
-fn in_parts<T: Send>(samples: &[f64], of: impl Fn(f64) -> T + Sync) -> Result<Vec<T>> {
-    let halves = samples.split_at(samples.len() / 2);
-    let part = |part: &[f64]| -> Result<Vec<T>> {
-        let one = |hz: &f64| match halt::asked() {
-            true => Err(Error::Interrupted(
-                "interrupted before the waves were computed; nothing is written".into(),
-            )),
-            false => Ok(of(*hz)),
-        };
-        part.iter().map(one).collect()
-    };
-    let heard = &halt::heard();
-    let (first, second) = threads::both(|| heard.during(|| part(halves.0)), || part(halves.1));
-    Ok(first?.into_iter().chain(second?).collect())
 }
 
 /// A beam on several meshes, with the factors of the differences from its own one.

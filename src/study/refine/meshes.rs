@@ -13,7 +13,7 @@ use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
 
-use super::{RefinedNumbers, SAFETY, has_cells_along_bladders};
+use super::{RefinedNumbers, SAFETY, finer_along_bladders};
 use crate::case::Case;
 use crate::case::schema::Effect;
 use crate::discrete::System;
@@ -98,9 +98,7 @@ pub fn judge(
         SAFETY * 4.0 / 3.0
     };
     found.compare("beam", here, compute(&other), factor, |share| &mut share.beam);
-    if has_cells_along_bladders(case)? {
-        let mut other = case.clone();
-        other.mesh.cells_per_bladder *= 2;
+    if let Some(other) = finer_along_bladders(case)? {
         found.compare("bladders", here, compute(&other), 2.0, |share| &mut share.bladders);
     }
     found.sum(here);

@@ -224,6 +224,13 @@ pub fn has_cells_along_bladders(case: &Case) -> Result<bool> {
     Ok(flows && system.model.effects.has(Effect::FlowAlongBladders))
 }
 
+/// The case with twice the cells along its bladders, if there are any.
+pub fn finer_along_bladders(case: &Case) -> Result<Option<Case>> {
+    let mut finer = case.clone();
+    finer.mesh.cells_per_bladder *= 2;
+    Ok(has_cells_along_bladders(case)?.then_some(finer))
+}
+
 /// Relative errors by name; `None` if unknown.
 type Errors = BTreeMap<String, Option<f64>>;
 

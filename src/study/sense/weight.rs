@@ -1,14 +1,19 @@
 //! Weight of the prior relative to the data.
 
+use std::convert::Infallible;
+
 use nalgebra::DMatrix;
 
 use super::estimate::{EstimateOptions, Smoothing};
 use crate::numerics::bayesian_least_squares::{Posterior, ReducedProblem};
+use crate::numerics::golden_section;
 
 /// Largest ratio of prior rows to measured rows.
 const HEAVIEST: f64 = 1e6;
 /// Search grid of the weight: lowest and highest logarithm, number of points.
 const WEIGHTS: (f64, f64, usize) = (-14.0, 25.0, 79);
+/// Error of the logarithm of the weight.
+const CLOSE: f64 = 1e-3;
 
 /// Weight of the prior by the criterion of `ask.smoothing`: maximum likelihood or discrepancy.
 pub(super) fn choose(
@@ -40,7 +45,10 @@ pub(super) fn choose(
     let step = (high - low) / (count - 1) as f64;
     let tried = (0..count).map(|k| low + step * k as f64).map(|w| (w, cost(w)));
     let best = tried.min_by(|a, b| a.1.total_cmp(&b.1)).map_or(0.0, |best| best.0);
-    golden(&cost, best - step, (best + step).min(high)).exp()
+    let around = [best - step, (best + step).min(high)];
+    let steps = golden_section::steps(around[1] - around[0], CLOSE);
+    let Ok(least) = golden_section::maximum(around, steps, |w| Ok::<_, Infallible>(-cost(w)));
+    least.exp()
 }
 
 /// Largest useful weight: beyond it the measured rows vanish in rounding errors and the result no longer changes.
@@ -55,23 +63,4 @@ pub(super) fn heaviest(weighted: impl Iterator<Item = DMatrix<f64>>, differences
         true => HEAVIEST * measured / before,
         false => f64::INFINITY,
     }
-}
-
-/// Minimizes a function between two bounds by golden section.
-fn golden(f: &dyn Fn(f64) -> f64, mut low: f64, mut high: f64) -> f64 {
-    let share = 0.5 * (5.0_f64.sqrt() - 1.0);
-    let (mut a, mut b) = (high - share * (high - low), low + share * (high - low));
-    let (mut at_a, mut at_b) = (f(a), f(b));
-    while high - low > 1e-3 {
-        if at_a < at_b {
-            (high, b, at_b) = (b, a, at_a);
-            a = high - share * (high - low);
-            at_a = f(a);
-        } else {
-            (low, a, at_a) = (a, b, at_b);
-            b = low + share * (high - low);
-            at_b = f(b);
-        }
-    }
-    0.5 * (low + high)
 }
