@@ -137,14 +137,13 @@ pub fn section(found: &Uncertainty) -> Value {
     let mut indices = vec![];
     for (name, one) in &found.figures {
         for (input, i) in found.inputs.iter().zip(one.indices.iter().flatten()) {
-            let [alone, with_others] = [[i.first, i.first_error], [i.total, i.total_error]];
             indices.push(json!([
                 name,
                 input.pointer,
-                alone[0],
-                alone[1],
-                with_others[0],
-                with_others[1]
+                i.first,
+                i.first_error,
+                i.total,
+                i.total_error
             ]));
         }
     }

@@ -3,7 +3,7 @@
 use super::LoadPath;
 use crate::discrete::quantities::probes::is_stress;
 use crate::discrete::quantities::{Group, Observable};
-use crate::output::columns::{self, aligned, if_any, warnings};
+use crate::output::columns::{self, aligned, if_any, joined, warnings};
 use crate::output::numbers::{counted, quantity, significant, with_error};
 use crate::run::equilibrium::EquilibriumState;
 use crate::run::record::HistoryColumn;
@@ -96,8 +96,10 @@ fn last_with_errors(found: &LoadPath) -> String {
         let error = error(column).filter(|_| shown)?;
         Some(format!("{} {}", column.name, with_error(*value, error, column.unit)))
     });
-    let texts: Vec<String> = texts.collect();
-    if_any(texts.len(), |_| format!("last state: {}\n", texts.join(" · ")))
+    match joined(texts, " · ") {
+        all if all.is_empty() => all,
+        all => format!("last state: {all}\n"),
+    }
 }
 
 /// True for quantities of the tip and pressures.

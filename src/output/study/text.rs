@@ -1,7 +1,6 @@
 //! The sentence at the end of a study.
 
 use crate::discrete::quantities::Observable;
-use crate::output::columns::if_any;
 use crate::output::numbers::{counted, significant, trimmed};
 use crate::study::accuracy::{Scheme, Study, StudySetting};
 
@@ -60,7 +59,11 @@ pub fn sentence(study: &Study) -> String {
 
 fn price(seconds: f64, setting: StudySetting, schemes: &[Scheme]) -> String {
     let StudySetting { scheme, cells, rtol } = setting;
-    let scheme = if_any(schemes.len().saturating_sub(1), |_| format!(", {scheme}"));
+    let scheme = if schemes.len() > 1 {
+        format!(", {scheme}")
+    } else {
+        String::new()
+    };
     let (seconds, cells) = (significant(seconds, 2), counted(cells as u64, "cell"));
     format!("{seconds} s ({cells}{scheme}, rtol {rtol:e})")
 }
