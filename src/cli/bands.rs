@@ -6,17 +6,16 @@ use std::process::ExitCode;
 use clap::Args;
 
 use super::arguments::{CaseArguments, ResultArguments};
+use super::response::check_band;
 use super::{resources, terminal};
 use crate::error::numbers::{counted, error_percent};
-use crate::error::{Code, Error, Result};
+use crate::error::{Code, Result};
 use crate::output::band_structure as files;
 use crate::output::kind::FolderKind;
 use crate::output::report;
 use crate::results;
-use crate::results::bands::{
-    AttenuationRecord, BandsRecord, EnergyRecord, GapRecord, LatticeModeRecord, WaveMotion, WaveRecord,
-};
-use crate::run::bands::waves::{Lattice, WaveEnergy, WaveKind};
+use crate::results::bands::{AttenuationRecord, BandsRecord, GapRecord, LatticeModeRecord, WaveMotion, WaveRecord};
+use crate::run::bands::waves::Lattice;
 use crate::study::bands::{BandGap, BandMode, BandStructure, BandWave, bands as compute, coupling_number};
 
 /// `bands`.
@@ -42,8 +41,6 @@ pub struct BandsArguments {
     pub json: bool,
 }
 
-/// Largest number of frequencies.
-const MOST: usize = 100_000;
 /// Damping ratio below which damping is a rounding error.
 const ROUNDING: f64 = 1e-12;
 /// Relative error of a standing wave above which a warning is issued.
@@ -51,18 +48,8 @@ const LARGE: f64 = 0.05;
 
 /// Computes the waves, writes the folder, prints gaps and standing waves.
 pub fn bands(asked: &BandsArguments) -> Result<ExitCode> {
-    if !(asked.from > 0.0 && asked.from < asked.to && asked.to.is_finite()) {
-        return Err(Error::Usage(format!(
-            "--from {} --to {}: expected two frequencies [Hz], the first above 0 and below the second",
-            asked.from, asked.to
-        )));
-    }
-    if !(2..=MOST).contains(&asked.points) {
-        return Err(Error::Usage(format!(
-            "--points {}: expected 2 to {MOST} frequencies",
-            asked.points
-        )));
-    }
+    let band = [asked.from, asked.to];
+    check_band(band, asked.points, asked.from < asked.to, "below")?;
     let case = resources::load(&asked.case)?;
     // a beam without a repeating cell is reported before a folder is created
     let lattice = Lattice::new(&case)?;
@@ -71,8 +58,8 @@ pub fn bands(asked: &BandsArguments) -> Result<ExitCode> {
     if !asked.result.quiet {
         terminal::print_line(&format!("waves of {}", case.name));
     }
-    let found = compute(&case, lattice, [asked.from, asked.to], asked.points)?;
-    let answer = answer(&case.name, [asked.from, asked.to], &found);
+    let found = compute(&case, lattice, band, asked.points)?;
+    let answer = answer(&case.name, band, &found);
     let written = files::write(&mut folder, &answer).map(|_| ());
     let written = written.and(report::complete(&folder, &case));
     super::print_result(
@@ -87,7 +74,8 @@ pub fn bands(asked: &BandsArguments) -> Result<ExitCode> {
 
 fn answer(case: &str, band: [f64; 2], found: &BandStructure) -> BandsRecord {
     let (about, cell) = (&found.lattice.about, &found.lattice.cell);
-    let standing: Vec<LatticeModeRecord> = found.standing.iter().map(mode).collect();
+    let modes = |all: &[BandMode]| -> Vec<LatticeModeRecord> { all.iter().map(mode).collect() };
+    let (standing, spectrum) = (modes(&found.standing), modes(&found.spectrum));
     let mut warnings = vec![];
     if let Some(first) = cell.others.first() {
         warnings.push(Code::OtherCells.warning(format!(
@@ -102,11 +90,7 @@ fn answer(case: &str, band: [f64; 2], found: &BandStructure) -> BandsRecord {
              as it starts.",
         ));
     }
-    if let Some(growing) = standing
-        .iter()
-        .chain(&spectrum(found))
-        .find(|mode| mode.damping_ratio < -1e-6)
-    {
+    if let Some(growing) = standing.iter().chain(&spectrum).find(|mode| mode.damping_ratio < -1e-6) {
         warnings.push(Code::Growth.warning(format!(
             "waves near {:.4} Hz grow: the waves at real frequencies are not those of a steady state",
             growing.frequency_hz
@@ -153,25 +137,8 @@ fn answer(case: &str, band: [f64; 2], found: &BandStructure) -> BandsRecord {
         gaps: found.gaps.iter().map(gap).collect(),
         standing,
         waves: found.waves.iter().map(wave).collect(),
-        spectrum: spectrum(found),
+        spectrum,
         warnings,
-    }
-}
-
-fn spectrum(found: &BandStructure) -> Vec<LatticeModeRecord> {
-    found.spectrum.iter().map(mode).collect()
-}
-
-fn energy(energy: WaveEnergy) -> EnergyRecord {
-    EnergyRecord {
-        motion: match energy.kind() {
-            WaveKind::Bending => WaveMotion::Bending,
-            WaveKind::Stretch => WaveMotion::Stretch,
-            WaveKind::Fluid => WaveMotion::Fluid,
-        },
-        bending: energy.bending,
-        stretch: energy.stretch,
-        fluid: energy.fluid,
     }
 }
 
@@ -187,7 +154,7 @@ fn wave(wave: &BandWave) -> WaveRecord {
         imag: wave.wave_number.im,
         attenuation_db: decibel(wave.wave_number.im),
         error: wave.error,
-        energy: energy(wave.energy),
+        energy: wave.energy.into(),
     }
 }
 
@@ -217,6 +184,6 @@ fn mode(mode: &BandMode) -> LatticeModeRecord {
             -mode.s.re / mode.s.norm()
         },
         error_hz: mode.error.map(|error| error / TAU),
-        energy: energy(mode.energy),
+        energy: mode.energy.into(),
     }
 }

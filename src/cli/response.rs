@@ -77,17 +77,24 @@ pub fn response(asked: &ResponseArguments) -> Result<ExitCode> {
     Ok(ExitCode::SUCCESS)
 }
 
+/// Checks first and last frequency [Hz], whose order is `ordered` if the first is `relation` the second, and the number of samples.
+pub fn check_band([from, to]: [f64; 2], points: usize, ordered: bool, relation: &str) -> Result<()> {
+    if !(from > 0.0 && ordered && to.is_finite()) {
+        return Err(Error::Usage(format!(
+            "--from {from} --to {to}: expected two frequencies [Hz], the first above 0 and {relation} the second"
+        )));
+    }
+    if !(2..=MOST).contains(&points) {
+        return Err(Error::Usage(format!(
+            "--points {points}: expected 2 to {MOST} frequencies"
+        )));
+    }
+    Ok(())
+}
+
 fn request(asked: &ResponseArguments) -> Result<Request> {
-    let usage = |what: String| Err(Error::Usage(what));
-    if !(asked.from > 0.0 && asked.from <= asked.to && asked.to.is_finite()) {
-        return usage(format!(
-            "--from {} --to {}: expected two frequencies [Hz], the first above 0 and not above the second",
-            asked.from, asked.to
-        ));
-    }
-    if !(2..=MOST).contains(&asked.points) {
-        return usage(format!("--points {}: expected 2 to {MOST} frequencies", asked.points));
-    }
+    let band = [asked.from, asked.to];
+    check_band(band, asked.points, asked.from <= asked.to, "not above")?;
     let mut outputs: Vec<String> = vec![];
     for name in &asked.output {
         if !outputs.contains(name) {
@@ -98,7 +105,7 @@ fn request(asked: &ResponseArguments) -> Result<Request> {
         input: asked.input.clone(),
         outputs,
         at: asked.at,
-        band: [asked.from, asked.to],
+        band,
         points: asked.points,
     })
 }

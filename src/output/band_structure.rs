@@ -13,7 +13,7 @@ use super::records;
 use crate::error::Result;
 use crate::error::numbers::error_percent;
 use crate::results;
-use crate::results::bands::{BandsRecord, GapRecord, LatticeModeRecord, WaveMotion, WaveRecord};
+use crate::results::bands::{BandsRecord, EnergyRecord, GapRecord, LatticeModeRecord, WaveMotion, WaveRecord};
 
 /// One row per wave and frequency.
 pub const CSV: &str = "bands.csv";
@@ -37,21 +37,21 @@ const COLUMNS: [&str; 9] = [
 /// The text of `bands.csv`.
 fn csv(found: &BandsRecord) -> String {
     let row = |wave: &WaveRecord| {
-        let energy = wave.energy;
+        let EnergyRecord { motion, shares } = wave.energy;
         let numbers = [
             wave.frequency_hz,
             wave.real,
             wave.imag,
             wave.attenuation_db,
-            energy.bending,
-            energy.stretch,
-            energy.fluid,
+            shares.bending,
+            shares.stretch,
+            shares.fluid,
         ];
         let error = wave.error.map_or_else(String::new, shortest);
         numbers
             .map(shortest)
             .into_iter()
-            .chain([energy.motion.name().into(), error])
+            .chain([motion.name().into(), error])
             .collect::<Vec<String>>()
     };
     records::text(COLUMNS, found.waves.iter().map(row))

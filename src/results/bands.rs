@@ -3,6 +3,8 @@
 use serde::{Deserialize, Serialize};
 
 use super::ResultFile;
+use crate::run::bands::waves::WaveEnergy;
+pub use crate::run::bands::waves::WaveMotion;
 
 /// Waves of the repeating cell of a case.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -37,43 +39,23 @@ pub struct BandsRecord {
 
 impl ResultFile for BandsRecord {}
 
-/// Motion of a wave with the largest energy.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum WaveMotion {
-    /// Bending of the beam.
-    Bending,
-    /// Stretch of the beam.
-    Stretch,
-    /// Pressure in the fluid.
-    Fluid,
-}
-
-impl WaveMotion {
-    /// All kinds, in the order of tables and pictures.
-    pub const ALL: [Self; 3] = [Self::Bending, Self::Fluid, Self::Stretch];
-
-    /// Name in files.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Bending => "bending",
-            Self::Stretch => "stretch",
-            Self::Fluid => "fluid",
-        }
-    }
-}
-
 /// Shares of bending, stretch and fluid in the energy of a wave.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct EnergyRecord {
     /// Motion with the largest energy.
     pub motion: WaveMotion,
-    /// Transverse motion.
-    pub bending: f64,
-    /// Axial motion.
-    pub stretch: f64,
-    /// Pressures.
-    pub fluid: f64,
+    /// The shares.
+    #[serde(flatten)]
+    pub shares: WaveEnergy,
+}
+
+impl From<WaveEnergy> for EnergyRecord {
+    fn from(shares: WaveEnergy) -> Self {
+        Self {
+            motion: shares.motion(),
+            shares,
+        }
+    }
 }
 
 /// A wave at a frequency; from cell to cell it is multiplied by `exp(-i real - imag)`.

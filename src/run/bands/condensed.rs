@@ -19,12 +19,11 @@ const FINITE: f64 = 1e-12;
 const SWEEPS: usize = 4;
 /// Residual of an equation, relative to its terms, of a wave that needs no further Newton step.
 const RESIDUAL: f64 = 1e-13;
-/// Largest `|ln |λ||` of waves that are refined, and largest relative Newton step.
-const FARTHEST: f64 = 7.0;
-const NEAR: f64 = 0.1;
-/// Newton steps for a factor, and the relative change by which they may move it.
+/// Largest attenuation [neper per cell] of the waves that are computed.
+pub const MOST: f64 = 7.0;
+/// Newton steps for a wave, and the largest relative one.
 const STEPS: usize = 4;
-const SETTLED: f64 = 1e-3;
+const NEAR: f64 = 0.1;
 
 /// A factor λ.
 #[derive(Clone, Debug, PartialEq)]
@@ -47,7 +46,7 @@ pub struct Condensed {
     /// Entries of `T_-`, `T_0` and `T_+`, with scaled rows and columns, their pattern, and the scales of the columns.
     entries: Vec<[Complex<f64>; 3]>,
     pattern: Pattern,
-    columns: Vec<Complex<f64>>,
+    columns: Vec<f64>,
     /// `G E_r`.
     answers: DMatrix<Complex<f64>>,
     /// `(T_- G)_rr` and `(T_+ G)_rr`.
@@ -55,36 +54,27 @@ pub struct Condensed {
 }
 
 /// Scales rows and columns of all parts to largest entries near 1 (Ruiz 2001); returns the scales of the columns.
-fn equilibrate(parts: &mut [DMatrix<Complex<f64>>; 3]) -> Vec<Complex<f64>> {
+fn equilibrate(parts: &mut [DMatrix<Complex<f64>>; 3]) -> Vec<f64> {
     let n = parts[0].nrows();
-    let mut columns = vec![Complex::from(1.0); n];
+    let mut columns = vec![1.0; n];
+    let scale = |largest: [f64; 3]| match largest.into_iter().fold(0.0, f64::max) {
+        0.0 => 1.0,
+        largest => largest.sqrt().recip(),
+    };
     for _ in 0..SWEEPS {
-        let mut largest = [vec![0.0_f64; n], vec![0.0_f64; n]];
-        for part in parts.iter() {
-            for ((row, column), x) in (0..n)
-                .flat_map(|column| (0..n).map(move |row| (row, column)))
-                .zip(part.iter())
-            {
-                let size = x.norm();
-                largest[0][row] = largest[0][row].max(size);
-                largest[1][column] = largest[1][column].max(size);
+        let of_rows: Vec<f64> = (0..n)
+            .map(|k| scale(parts.each_ref().map(|part| part.row(k).camax())))
+            .collect();
+        let of_columns: Vec<f64> = (0..n)
+            .map(|k| scale(parts.each_ref().map(|part| part.column(k).camax())))
+            .collect();
+        for k in 0..n {
+            for part in parts.iter_mut() {
+                part.row_mut(k).scale_mut(of_rows[k]);
+                part.column_mut(k).scale_mut(of_columns[k]);
             }
+            columns[k] *= of_columns[k];
         }
-        let by = largest.map(|sizes| {
-            sizes
-                .into_iter()
-                .map(|size| if size > 0.0 { size.sqrt().recip() } else { 1.0 })
-                .collect::<Vec<_>>()
-        });
-        for part in parts.iter_mut() {
-            for ((row, column), x) in (0..n)
-                .flat_map(|column| (0..n).map(move |row| (row, column)))
-                .zip(part.iter_mut())
-            {
-                *x *= by[0][row] * by[1][column];
-            }
-        }
-        columns.iter_mut().zip(&by[1]).for_each(|(scale, by)| *scale *= by);
     }
     columns
 }
@@ -120,7 +110,7 @@ impl Condensed {
         })
     }
 
-    /// Polynomial at λ, and its derivative.
+    /// Polynomial of w at λ, and its derivative.
     fn at(&self, factor: Complex<f64>) -> [DMatrix<Complex<f64>>; 2] {
         let [before, behind] = &self.parts;
         let mut value = before + behind * (factor * factor);
@@ -132,7 +122,7 @@ impl Condensed {
         [value, derivative]
     }
 
-    /// Factors λ of the finite waves, with all unknowns of the cell. None if the equations are singular for every λ.
+    /// Waves that are attenuated by at most [`MOST`]. None if the equations are singular for every λ.
     ///
     /// With `θ = 1/(λ - σ)` the polynomial is `θ² P(σ) + θ P'(σ) + (T_+ G)_rr`, whose companion matrix has an ordinary eigenvalue problem.
     pub fn waves(&self) -> Option<Vec<BlochFactor>> {
@@ -152,29 +142,26 @@ impl Condensed {
         let mut all = eigen(2 * n, &entry)?;
         let largest = all.first().map_or(0.0, |(theta, _)| theta.norm());
         all.retain(|(theta, _)| theta.norm() > FINITE * largest);
-        let wave = |(theta, x): (Complex<f64>, Vec<Complex<f64>>)| {
-            let (factor, w) = self.refined(shift + theta.inv(), DVector::from_column_slice(&x[..n]));
-            self.whole(factor, &self.answers * -w)
+        let factor = |theta: Complex<f64>| shift + theta.inv();
+        all.retain(|(theta, _)| factor(*theta).norm().ln().abs() <= MOST);
+        let wave = |(theta, w): (Complex<f64>, Vec<Complex<f64>>)| {
+            self.wave(factor(theta), &self.answers * -DVector::from_column_slice(&w[..n]))
         };
         Some(all.into_iter().map(wave).collect())
     }
 
-    /// Newton's method in the equations of the cell, where those of the few unknowns w have large rounding errors.
-    fn whole(&self, mut factor: Complex<f64>, x: DVector<Complex<f64>>) -> BlochFactor {
+    /// A wave by Newton's method in the equations of the cell, since those of the few unknowns w have larger rounding errors.
+    fn wave(&self, mut factor: Complex<f64>, x: DVector<Complex<f64>>) -> BlochFactor {
         let mut x: Vec<Complex<f64>> = x.iter().copied().collect();
         let mut klu = ComplexKlu::new(&self.pattern).ok();
         for _ in 0..STEPS {
-            let value = |[before, own, behind]: &[Complex<f64>; 3]| before + factor * own + factor * factor * behind;
-            let derivative = |[_, own, behind]: &[Complex<f64>; 3]| own + 2.0 * factor * behind;
-            let values: Vec<Complex<f64>> = self.entries.iter().map(value).collect();
+            let values = self.values(factor);
             let (product, sizes) = self.product(&values, &x);
             let residual = product.iter().map(|residual| residual.norm()).fold(0.0, f64::max);
-            let terms = sizes.iter().copied().fold(f64::MIN_POSITIVE, f64::max);
-            if factor.norm().ln().abs() > FARTHEST || residual < RESIDUAL * terms {
+            if residual < RESIDUAL * sizes.iter().copied().fold(f64::MIN_POSITIVE, f64::max) {
                 break;
             }
-            let derivatives: Vec<Complex<f64>> = self.entries.iter().map(derivative).collect();
-            let (mut step, _) = self.product(&derivatives, &x);
+            let (mut step, _) = self.product(&self.derivatives(factor), &x);
             let solved = klu
                 .as_mut()
                 .is_some_and(|klu| klu.factor(&values).is_ok() && klu.solve(&mut step));
@@ -196,20 +183,29 @@ impl Condensed {
         }
     }
 
+    /// Entries of `T_- + λ T_0 + λ² T_+`.
+    fn values(&self, factor: Complex<f64>) -> Vec<Complex<f64>> {
+        let value = |[before, own, behind]: &[Complex<f64>; 3]| before + factor * own + factor * factor * behind;
+        self.entries.iter().map(value).collect()
+    }
+
+    /// Entries of its derivative by λ.
+    fn derivatives(&self, factor: Complex<f64>) -> Vec<Complex<f64>> {
+        let derivative = |[_, own, behind]: &[Complex<f64>; 3]| own + 2.0 * factor * behind;
+        self.entries.iter().map(derivative).collect()
+    }
+
     /// Bound of the relative error of a factor by the residual, but at least by rounding errors.
     fn rounding(&self, mut klu: ComplexKlu, factor: Complex<f64>, x: &[Complex<f64>]) -> f64 {
         // beside the factor, where the matrix is not quite singular
         let beside = factor * (1.0 + 1e-13);
-        let value = |[before, own, behind]: &[Complex<f64>; 3]| before + beside * own + beside * beside * behind;
-        let derivative = |[_, own, behind]: &[Complex<f64>; 3]| own + 2.0 * beside * behind;
-        let values: Vec<Complex<f64>> = self.entries.iter().map(value).collect();
+        let values = self.values(beside);
         let (product, sizes) = self.product(&values, x);
         let mut left = x.to_vec();
         if klu.factor(&values).is_err() || !klu.solve_adjoint(&mut left) {
             return f64::INFINITY;
         }
-        let derivatives: Vec<Complex<f64>> = self.entries.iter().map(derivative).collect();
-        let (change, _) = self.product(&derivatives, x);
+        let (change, _) = self.product(&self.derivatives(beside), x);
         let change: Complex<f64> = left.iter().zip(&change).map(|(y, change)| y.conj() * change).sum();
         let errors = product
             .iter()
@@ -231,27 +227,5 @@ impl Condensed {
             }
         }
         (product, sizes)
-    }
-
-    /// Newton's method for a factor and its vector, started from approximations, which are returned if it moves far from them.
-    fn refined(&self, start: Complex<f64>, x: DVector<Complex<f64>>) -> (Complex<f64>, DVector<Complex<f64>>) {
-        let (mut factor, mut vector) = (start, x.clone());
-        for _ in 0..STEPS {
-            let [own, derivative] = self.at(factor);
-            let Some(step) = own.lu().solve(&(derivative * &vector)) else {
-                break;
-            };
-            let largest = step.icamax_full().0;
-            let by = vector[largest] / step[largest];
-            if !by.norm().is_finite() {
-                break;
-            }
-            factor -= by;
-            vector = step.unscale(step.norm());
-        }
-        match (factor - start).norm() < SETTLED * start.norm() {
-            true => (factor, vector),
-            false => (start, x),
-        }
     }
 }

@@ -1,9 +1,11 @@
 //! Waves of a cell at a frequency, frequencies at a wave number, and energies of both.
 
 use nalgebra::{Complex, DMatrix, DVector};
+use serde::{Deserialize, Serialize};
 use slcbeam_dense::eigen;
 
 use super::cell::RepeatingCell;
+pub use super::condensed::MOST;
 use super::condensed::{BlochFactor, Condensed};
 use crate::case::Case;
 use crate::error::Result;
@@ -37,7 +39,7 @@ pub struct BlochWave {
 }
 
 /// Shares of transverse motion, of axial motion and of pressures in the energy of a wave, which add up to 1.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct WaveEnergy {
     /// Transverse motion.
     pub bending: f64,
@@ -47,15 +49,30 @@ pub struct WaveEnergy {
     pub fluid: f64,
 }
 
-/// Kinds of waves, by their largest energy.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum WaveKind {
+/// Motion of a wave with the largest energy.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum WaveMotion {
     /// Transverse motion of the beam.
     Bending,
     /// Axial motion of the beam.
     Stretch,
     /// Pressure in bladders and tubes.
     Fluid,
+}
+
+impl WaveMotion {
+    /// All motions, in the order of tables and pictures.
+    pub const ALL: [Self; 3] = [Self::Bending, Self::Fluid, Self::Stretch];
+
+    /// Name in files.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Bending => "bending",
+            Self::Stretch => "stretch",
+            Self::Fluid => "fluid",
+        }
+    }
 }
 
 impl BlochWave {
@@ -66,14 +83,14 @@ impl BlochWave {
 }
 
 impl WaveEnergy {
-    /// Kind of the wave.
-    pub fn kind(&self) -> WaveKind {
+    /// Motion with the largest energy.
+    pub fn motion(&self) -> WaveMotion {
         if self.fluid > self.bending + self.stretch {
-            WaveKind::Fluid
+            WaveMotion::Fluid
         } else if self.stretch > self.bending {
-            WaveKind::Stretch
+            WaveMotion::Stretch
         } else {
-            WaveKind::Bending
+            WaveMotion::Bending
         }
     }
 }
@@ -90,7 +107,7 @@ impl Lattice {
         Ok(Self { about, cell })
     }
 
-    /// Waves at s [1/s]; none if the equations are singular.
+    /// Waves at s [1/s] that are attenuated by at most [`MOST`]; none if the equations are singular.
     pub fn waves(&self, s: Complex<f64>) -> Vec<BlochWave> {
         let found = Condensed::new(&self.cell, s)
             .and_then(|condensed| condensed.waves())

@@ -5,7 +5,9 @@ use std::f64::consts::TAU;
 
 use nalgebra::Complex;
 
-use super::{BandGap, BandMode, BandWave, Meshes, StrongestAttenuation, is_lossless, stretches, waves_at};
+use super::{
+    BandGap, BandMode, BandWave, Meshes, StrongestAttenuation, extrapolated, is_lossless, stretches, waves_at,
+};
 use crate::integrate::halt;
 use crate::numerics::golden_section;
 use crate::run::bands::waves::{Lattice, WaveEnergy};
@@ -90,12 +92,10 @@ impl<'a> BandMotion<'a> {
     }
 
     fn at(&self, lattice: &Lattice, hz: f64) -> Least {
-        let waves = waves_at(lattice, hz).into_iter();
-        let own = waves.filter(|wave| belongs(lattice.energy(wave), self.stretch));
-        Least::new(
-            least(own.map(|wave| (wave.wave_number(), wave.rounding))),
-            self.lossless,
-        )
+        let mut waves = waves_at(lattice, hz);
+        waves.sort_by(|a, b| a.wave_number().im.abs().total_cmp(&b.wave_number().im.abs()));
+        let own = waves.iter().find(|wave| belongs(lattice.energy(wave), self.stretch));
+        Least::new(own.map(|wave| (wave.wave_number(), wave.rounding)), self.lossless)
     }
 
     /// Largest attenuation near a sample of a local maximum.
@@ -146,17 +146,21 @@ impl<'a> BandMotion<'a> {
             // errors of a coarse mesh exceed the width of a narrow gap
             let ordered = both[0][1].hz < both[1][1].hz;
             let edges = both.map(|[own, extrapolated]| if ordered { extrapolated } else { own });
-            let strongest = self.strongest_of(first..behind);
-            BandGap {
+            let strongest = self.strongest_of(first..behind)?;
+            Some(BandGap {
                 stretch: self.stretch,
                 edges: edges.map(|edge| edge.hz),
                 errors: edges.map(|edge| edge.error),
-                deepest_hz: strongest.map_or(f64::NAN, |one| one.frequency_hz),
-                attenuation: strongest.map_or(f64::INFINITY, |one| one.attenuation),
-            }
+                deepest_hz: strongest.frequency_hz,
+                attenuation: strongest.attenuation,
+            })
         };
         let wide = |gap: &BandGap| gap.edges[1] - gap.edges[0] > NARROWEST * gap.edges[1];
-        (0..self.least.len()).filter(begins).map(gap).filter(wide).collect()
+        (0..self.least.len())
+            .filter(begins)
+            .filter_map(gap)
+            .filter(wide)
+            .collect()
     }
 
     /// Edge between a frequency in a gap and one outside [Hz], on the mesh and extrapolated. Without losses it is an oscillation of wave
@@ -185,21 +189,18 @@ impl<'a> BandMotion<'a> {
             return [mode.on_mesh, mode.s].map(|s| GapEdge { hz: s.im / TAU, error });
         }
         let toward = (inside - outside).signum();
-        let (mut edge, mut error) = (own, (!self.meshes.others.is_empty()).then_some(0.0));
-        for (other, by) in &self.meshes.others {
+        let there = |(other, factor): &(Lattice, f64)| {
             let bracket = (0..DOUBLINGS).find_map(|k| {
                 let by = toward * NEAR * own * f64::from(1 << k);
                 let found = !passes(other, own + by) && passes(other, own - by);
                 found.then_some([own + by, own - by])
             });
-            error = error.zip(bracket).map(|(error, [inside, outside])| {
-                let change = (bisect(other, inside, outside) - own) * by;
-                edge += change;
-                error + change.abs()
-            });
-        }
-        let hz = if error.is_some() { edge } else { own };
-        [GapEdge { hz: own, error }, GapEdge { hz, error }]
+            let edge = bracket.map(|[inside, outside]| bisect(other, inside, outside).into());
+            (edge, *factor)
+        };
+        let known = extrapolated(own.into(), self.meshes.others.iter().map(there));
+        let error = known.map(|(_, error)| error);
+        [own, known.map_or(own, |(edge, _)| edge.re)].map(|hz| GapEdge { hz, error })
     }
 }
 

@@ -21,8 +21,6 @@ use crate::error::{Error, Result};
 use crate::integrate::halt;
 use crate::run::bands::waves::{BlochWave, Lattice, WaveEnergy};
 
-/// Attenuation [neper per cell] above which a wave is left out.
-const MOST: f64 = 7.0;
 /// Attenuation [neper per cell] below which a wave passes without loss: relative to its phase lag, and at least.
 const LOSSLESS: (f64, f64) = (1e-7, 1e-9);
 /// Rounding error of a wave number, relative to it, above which a wave is left out.
@@ -224,13 +222,11 @@ struct Meshes<'a> {
 impl Meshes<'_> {
     /// Waves at a frequency.
     fn at(&self, hz: f64) -> Sample {
-        let mut own = self.own.waves(Complex::new(0.0, TAU * hz));
-        own.retain(|wave| wave.wave_number().im.abs() <= MOST);
-        let all = own.len();
-        own.retain(|wave| !is_rounded(wave));
+        let all = self.own.waves(Complex::new(0.0, TAU * hz)).into_iter();
+        let (rounded, own): (Vec<_>, Vec<_>) = all.partition(is_rounded);
         Sample {
             hz,
-            lost: own.len() < all,
+            lost: !rounded.is_empty(),
             own: own.into_iter().map(|wave| (self.own.energy(&wave), wave)).collect(),
             others: self
                 .others
@@ -245,36 +241,40 @@ impl Meshes<'_> {
         let wide = [0.5 * band[0], 1.5 * band[1]];
         let mut all = vec![];
         for wave_number in [0.0, PI] {
-            let others: Vec<(Vec<BandMode>, f64)> = self
-                .others
-                .iter()
-                .map(|(other, by)| (modes_at(other, wave_number, wide), *by))
-                .collect();
             let own = modes_at(self.own, wave_number, band);
-            let partners: Vec<(Vec<Option<BandMode>>, f64)> =
-                others.iter().map(|(other, by)| (partners(&own, other), *by)).collect();
-            let extrapolated = |(k, mode): (usize, &BandMode)| {
-                let (mut s, mut error) = (mode.s, (!others.is_empty()).then_some(0.0));
-                for (partners, by) in &partners {
-                    error = error.zip(partners[k]).map(|(error, partner)| {
-                        let change = (partner.s - mode.s) * *by;
-                        s += change;
-                        error + change.norm()
-                    });
-                }
-                let known = error.filter(|error| *error < SAME * mode.s.norm() && s.im > 0.0);
-                let s = if known.is_some() { s } else { mode.s };
+            let others = self.others.iter();
+            let others: Vec<(Vec<Option<BandMode>>, f64)> = others
+                .map(|(other, by)| (partners(&own, &modes_at(other, wave_number, wide)), *by))
+                .collect();
+            let whole = |(k, mode): (usize, &BandMode)| {
+                let partners = others
+                    .iter()
+                    .map(|(partners, by)| (partners[k].map(|partner| partner.s), *by));
+                let known = extrapolated(mode.s, partners);
+                let known = known.filter(|(s, error)| *error < SAME * mode.s.norm() && s.im > 0.0);
                 BandMode {
-                    s,
-                    error: known,
+                    s: known.map_or(mode.s, |(s, _)| s),
+                    error: known.map(|(_, error)| error),
                     ..*mode
                 }
             };
-            all.extend(own.iter().enumerate().map(extrapolated));
+            all.extend(own.iter().enumerate().map(whole));
         }
         all.sort_by(|a, b| a.s.im.total_cmp(&b.s.im));
         all
     }
+}
+
+/// A value with those of other meshes and the factors of the differences: extrapolated, and the sum of the corrections. None without
+/// other meshes, or if one of them has no such value.
+fn extrapolated(
+    own: Complex<f64>,
+    others: impl Iterator<Item = (Option<Complex<f64>>, f64)>,
+) -> Option<(Complex<f64>, f64)> {
+    let corrections: Option<Vec<Complex<f64>>> = others.map(|(other, by)| Some((other? - own) * by)).collect();
+    let corrections = corrections.filter(|all| !all.is_empty())?;
+    let error = corrections.iter().map(|correction| correction.norm()).sum();
+    Some((own + corrections.iter().sum::<Complex<f64>>(), error))
 }
 
 /// Oscillations of another mesh that belong to those of a mesh, each to at most one: the nearest of the same motion.
@@ -296,7 +296,7 @@ fn stretches(energy: WaveEnergy) -> bool {
 /// Waves at a frequency, without those of which rounding errors leave no two digits.
 fn waves_at(lattice: &Lattice, hz: f64) -> Vec<BlochWave> {
     let mut waves = lattice.waves(Complex::new(0.0, TAU * hz));
-    waves.retain(|wave| wave.wave_number().im.abs() <= MOST && !is_rounded(wave));
+    waves.retain(|wave| !is_rounded(wave));
     waves
 }
 

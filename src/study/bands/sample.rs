@@ -2,8 +2,8 @@
 
 use nalgebra::Complex;
 
-use super::{BandWave, MOST, SAME, is_lossless};
-use crate::run::bands::waves::{BlochWave, WaveEnergy};
+use super::{BandWave, SAME, extrapolated, is_lossless};
+use crate::run::bands::waves::{BlochWave, MOST, WaveEnergy};
 
 /// Waves at a frequency on the mesh, with energies, and on others.
 pub struct Sample {
@@ -50,16 +50,15 @@ impl Sample {
     fn wave(&self, wave: &BlochWave, energy: WaveEnergy, reciprocal: bool) -> BandWave {
         let smooth = |wave: &BlochWave| if reciprocal { smooth(wave) } else { wave.factor };
         let own = smooth(wave);
-        let (mut whole, mut known) = (own, !self.others.is_empty());
-        for (waves, by) in &self.others {
-            let near = waves
-                .iter()
-                .map(smooth)
-                .min_by(|a, b| (a - own).norm().total_cmp(&(b - own).norm()));
-            let near = near.filter(|near| (near - own).norm() < SAME * own.norm().max(near.norm()));
-            known &= near.is_some();
-            whole += near.map_or_else(Complex::default, |near| (near - own) * *by);
-        }
+        let near = |(waves, by): &(Vec<BlochWave>, f64)| {
+            let all = waves.iter().map(smooth);
+            let near = all.min_by(|a, b| (a - own).norm().total_cmp(&(b - own).norm()));
+            (
+                near.filter(|near| (near - own).norm() < SAME * own.norm().max(near.norm())),
+                *by,
+            )
+        };
+        let whole = extrapolated(own, self.others.iter().map(near));
         let number = |smooth: Complex<f64>| match reciprocal {
             true => (smooth.sqrt().asin() * 2.0).conj(),
             false => Complex::new(-smooth.arg(), -smooth.norm().ln()),
@@ -75,13 +74,13 @@ impl Sample {
             false => number,
         };
         let on_mesh = folded(number_on_mesh);
-        let extrapolated = folded(number(whole));
+        let whole = whole.map(|(whole, _)| folded(number(whole)));
         BandWave {
             frequency_hz: self.hz,
-            wave_number: if known { extrapolated } else { on_mesh },
+            wave_number: whole.unwrap_or(on_mesh),
             on_mesh,
             rounding: wave.rounding,
-            error: known.then(|| (extrapolated - on_mesh).norm() + wave.rounding),
+            error: whole.map(|whole| (whole - on_mesh).norm() + wave.rounding),
             energy,
         }
     }
