@@ -5,7 +5,6 @@
 use std::f64::consts::{PI, TAU};
 use std::fs;
 
-use assert_cmd::Command;
 use nalgebra::Complex;
 use serde_json::{Value, json};
 use slcbeam::run::bands::waves::{BlochWave, Lattice};
@@ -14,6 +13,7 @@ use slcbeam::study::bands::{bands, coupling_number};
 
 use tempfile::TempDir;
 
+use super::cli::run;
 use super::common::checked;
 
 /// Length 1 m, EI 1 N m^2, 1 kg/m, EA 1.2e5 N, ten segments, with attachments at the ends of segments.
@@ -263,11 +263,6 @@ fn the_cell_is_found_or_the_reason_why_not() {
 #[test]
 fn bands_have_files_and_gaps() {
     let dir = TempDir::new().unwrap();
-    let run = |arguments: &[&str]| {
-        let output = Command::cargo_bin("slcbeam").unwrap().args(arguments).output().unwrap();
-        let text = |bytes| String::from_utf8(bytes).unwrap();
-        (output.status.code().unwrap(), text(output.stdout), text(output.stderr))
-    };
     let out = dir.path().join("bands");
     let folder = out.to_str().unwrap();
     let asked = [

@@ -8,12 +8,16 @@ use tempfile::TempDir;
 
 const SMALL: &str = "cases/two-bladders.json";
 
-/// Exit code, standard output and standard error of `slcbeam modes`.
-pub fn modes(arguments: &[&str]) -> (i32, String, String) {
-    let mut command = Command::cargo_bin("slcbeam").unwrap();
-    let output = command.arg("modes").args(arguments).output().unwrap();
+/// Exit code, standard output and standard error of the program.
+pub fn run(arguments: &[&str]) -> (i32, String, String) {
+    let output = Command::cargo_bin("slcbeam").unwrap().args(arguments).output().unwrap();
     let text = |bytes| String::from_utf8(bytes).unwrap();
     (output.status.code().unwrap(), text(output.stdout), text(output.stderr))
+}
+
+/// That of `slcbeam modes`.
+pub fn modes(arguments: &[&str]) -> (i32, String, String) {
+    run(&[&["modes"], arguments].concat())
 }
 
 #[test]
@@ -232,11 +236,6 @@ fn the_table_names_the_compared_mesh() {
 #[test]
 fn responses_have_files_and_a_model() {
     let dir = TempDir::new().unwrap();
-    let run = |arguments: &[&str]| {
-        let output = Command::cargo_bin("slcbeam").unwrap().args(arguments).output().unwrap();
-        let text = |bytes| String::from_utf8(bytes).unwrap();
-        (output.status.code().unwrap(), text(output.stdout), text(output.stderr))
-    };
     let out = dir.path().join("response");
     let folder = out.to_str().unwrap();
     let of = ["--input", "/ends/root/clamped/u3_m", "--output", "tip_u3,tip_u1_m"];
