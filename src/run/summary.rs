@@ -210,7 +210,8 @@ pub struct ProgramChoice {
     pub reason: String,
 }
 
-/// Errors of a quantity, relative to its largest figure; absent if unknown.
+/// Errors of a quantity beside an accuracy, relative to its size there: its largest figure, and at least a tenth of the largest with the
+/// same unit; absent if unknown.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct ErrorEstimate {
     /// Error of the time integration.
@@ -360,11 +361,11 @@ pub fn largest_error(errors: &BTreeMap<String, f64>) -> Option<f64> {
 impl Summary {
     /// Largest error of a quantity or probe over its largest figure; `None` if unknown.
     pub fn relative_error(&self, name: &str) -> Option<f64> {
-        if let Some(found) = &self.accuracy {
-            return found.quantities.get(name)?.total;
-        }
+        let Some(errors) = self.errors.get(name) else {
+            return self.accuracy.as_ref()?.quantities.get(name)?.total;
+        };
         let quantity = self.quantities.get(name).or_else(|| self.probes.get(name))?;
-        let largest = largest_error(self.errors.get(name)?)?;
+        let largest = largest_error(errors)?;
         Some(largest / quantity.size()).filter(|e| e.is_finite())
     }
 

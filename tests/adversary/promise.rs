@@ -4,8 +4,9 @@ use std::sync::Mutex;
 
 use slcbeam::case::Case;
 use slcbeam::discrete::System;
+use slcbeam::run::rounding_scales::RoundingScales;
 use slcbeam::run::summary::Summary;
-use slcbeam::study::companion::{self, Accurate};
+use slcbeam::study::companion::{self, Accurate, error};
 use slcbeam::study::target;
 
 use crate::judge::{self, KNOWN, Verdict, Word, errors, guess, should_end, unknown};
@@ -37,14 +38,15 @@ pub fn judge(case: &Case, asked: f64, found: &Found) -> (Verdict, Vec<f64>) {
         _ if !finished(&run) => none(Verdict::new(Word::Ended, run.reason.unwrap_or_default())),
         Found::Unknown(why) => none(Verdict::new(Word::Unknown, why.as_str())),
         Found::Ends(why) => none(should_end(&run, why)),
-        Found::Known(reference) => kept(&run, asked, reference),
+        Found::Known(reference) => kept(case, &run, asked, reference),
     }
 }
 
-fn kept(run: &Summary, asked: f64, reference: &Reference) -> (Verdict, Vec<f64>) {
+fn kept(case: &Case, run: &Summary, asked: f64, reference: &Reference) -> (Verdict, Vec<f64>) {
     let Some(accuracy) = &run.accuracy else {
         return (Verdict::new(Word::Warned, "nothing is promised"), vec![]);
     };
+    let reference = &beside_others(case, run, reference);
     let off = errors(&figures(run), reference, |_| true);
     let surely = off.iter().find(|one| one.beyond(asked));
     let Some(worst) = surely.or(off.first()) else {
@@ -80,6 +82,17 @@ fn kept(run: &Summary, asked: f64, reference: &Reference) -> (Verdict, Vec<f64>)
         (false, _) => Word::Right,
     };
     (Verdict::new(word, told), ratios)
+}
+
+/// A reference with the sizes that an accuracy refers to.
+fn beside_others(case: &Case, run: &Summary, reference: &Reference) -> Reference {
+    let floors = RoundingScales::from_case(case).expect("a case that runs");
+    let factors = error::factors_of_sizes(run, &floors, error::SMALL);
+    let mut reference = reference.clone();
+    for (name, size) in &mut reference.sizes {
+        *size *= factors.get(name.as_str()).copied().unwrap_or(1.0);
+    }
+    reference
 }
 
 /// How often an accuracy of 1 % is reached, and how often that is true, in the scenes of seeds.

@@ -6,6 +6,7 @@ mod estimates;
 mod models;
 mod scenes;
 
+use std::collections::BTreeMap;
 use std::path::Path;
 use std::time::{Duration, Instant};
 
@@ -14,9 +15,10 @@ use slcbeam::case::{self, Case};
 use slcbeam::discrete::System;
 use slcbeam::run::dynamics::{self, Outcome};
 use slcbeam::run::record::{Control, Progress, Unrecorded};
+use slcbeam::run::rounding_scales::RoundingScales;
 use slcbeam::run::summary::{Status, Summary};
 use slcbeam::study::accuracy::plan;
-use slcbeam::study::companion::{self, Accurate};
+use slcbeam::study::companion::{self, Accurate, error};
 use slcbeam::study::target;
 use slcbeam::study::target::effects::Annotate;
 
@@ -58,8 +60,14 @@ fn figures(name: &str, summary: &Summary) -> Vec<f64> {
     quantity.map_or(vec![], |q| q.figures().map(|f| f.1).collect())
 }
 
+/// Factors of the sizes of quantities that an accuracy of a run refers to.
+fn factors<'a>(case: &Case, run: &'a Summary) -> BTreeMap<&'a str, f64> {
+    let floors = RoundingScales::from_case(case).expect("a case that runs");
+    error::factors_of_sizes(run, &floors, error::SMALL)
+}
+
 /// Largest error of a quantity's figures, relative to the largest of them.
-fn error(name: &str, run: &Summary, reference: &Summary) -> f64 {
+fn largest_error(name: &str, run: &Summary, reference: &Summary) -> f64 {
     let (a, b) = (figures(name, run), figures(name, reference));
     let size = b.iter().fold(0.0_f64, |s, x| s.max(x.abs()));
     a.iter().zip(&b).fold(0.0_f64, |e, (x, y)| e.max((x - y).abs())) / size
@@ -176,10 +184,10 @@ impl Tally {
             return unreached;
         }
         for (asked, summary) in &runs {
-            let accuracy = found(summary);
+            let (accuracy, factors) = (found(summary), factors(case, summary));
             for (quantity, estimate) in &accuracy.quantities {
                 let total = estimate.total.expect("reached, so known");
-                let true_error = error(quantity, summary, &reference);
+                let true_error = largest_error(quantity, summary, &reference) / factors[quantity.as_str()];
                 println!("    {quantity} at {asked}: error {true_error:.1e}, estimate {total:.1e}");
                 self.all += 1;
                 self.held += usize::from(true_error <= *asked);
@@ -264,7 +272,7 @@ impl Promises {
         };
         for (asked, summary) in &runs {
             self.reached += 1;
-            let found = found(summary);
+            let (found, factors) = (found(summary), factors(&case, summary));
             let mut kept = true;
             for (name, estimate) in &found.quantities {
                 let total = estimate.total.expect("reached, so known");
@@ -272,7 +280,7 @@ impl Promises {
                     total <= *asked,
                     "{number} {kind}: {name} {total} is said to be within {asked}"
                 );
-                let error = beyond(name, summary, [&coarse, &fine]);
+                let error = beyond(name, summary, [&coarse, &fine]) / factors[name.as_str()];
                 self.quantities += usize::from(sharp);
                 let near = error <= 5.0 * total && total <= 5.0 * error || total.max(error) < 0.1 * asked;
                 self.near += usize::from(near && sharp);

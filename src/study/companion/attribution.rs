@@ -76,7 +76,7 @@ pub(super) fn attribute(
     recorder: &mut dyn Recorder,
 ) -> Result<()> {
     let floors = &RoundingScales::from_case(case)?;
-    let least = least(accuracy);
+    let limit = [least(accuracy), small(accuracy)];
     let mut cells = summary.companion.as_ref().map_or([0; 2], |companion| {
         [companion.cells_per_segment, companion.cells_per_bladder]
     });
@@ -93,7 +93,7 @@ pub(super) fn attribute(
         summary.errors = added(&of_companion, &found, f64::INFINITY);
     }
     let mut causes = None;
-    if !large(summary, floors, least).is_empty() {
+    if !large(summary, floors, limit).is_empty() {
         let measured = match accuracy.is_some() || work(summary) <= LARGEST_WORK {
             true => measure(case, summary, floors, cells, accuracy, found, recorder)?,
             false => Causes::TooLarge,
@@ -111,7 +111,7 @@ pub(super) fn attribute(
     }
     if let Some(accuracy) = accuracy
         && has_few_cells(case)
-        && large(summary, floors, accuracy.asked).is_empty()
+        && large(summary, floors, [accuracy.asked, error::SMALL]).is_empty()
     {
         let finer = [2 * case.mesh.cells_per_segment, cells[1]];
         let mut by_mesh = BTreeMap::new();
@@ -125,7 +125,7 @@ pub(super) fn attribute(
         };
     }
     let Some(causes) = causes else { return Ok(()) };
-    let large = large(summary, floors, least);
+    let large = large(summary, floors, limit);
     if accuracy.is_none() && !large.is_empty() {
         let warning = describe(case, summary, &large, &causes, &shares(summary, causes.known()));
         summary.warnings.insert(0, warning);
@@ -142,6 +142,11 @@ fn least(accuracy: Option<&Accurate>) -> f64 {
     accuracy.map_or(NAMED_FROM, |accuracy| SURE * accuracy.asked)
 }
 
+/// Part of the largest figure with its unit that the size of a quantity is at least.
+fn small(accuracy: Option<&Accurate>) -> f64 {
+    accuracy.map_or(0.0, |_| error::SMALL)
+}
+
 /// Expected errors by cause that the companion does not contradict and that need not be known better.
 fn believed(accuracy: &Accurate, summary: &Summary, floors: &RoundingScales) -> BTreeMap<ErrorCause, Figures> {
     let (asked, mut expected) = (accuracy.asked, accuracy.expected.clone());
@@ -149,7 +154,7 @@ fn believed(accuracy: &Accurate, summary: &Summary, floors: &RoundingScales) -> 
         let mut errors = summary.errors.clone();
         let values = errors.values_mut().flat_map(BTreeMap::values_mut);
         values.for_each(|error| *error *= part);
-        error::relative(summary, &added(&errors, &accuracy.expected, f64::INFINITY), floors)
+        error::relative(summary, &added(&errors, &accuracy.expected, f64::INFINITY), floors, error::SMALL)
     };
     let sums = with(0.0);
     let sum = |name: &String| sums.get(name).copied().unwrap_or(0.0);
@@ -161,7 +166,7 @@ fn believed(accuracy: &Accurate, summary: &Summary, floors: &RoundingScales) -> 
     }
     // orders of refinements are expected to be low
     expected.retain(|_, errors| {
-        let own = error::relative(summary, errors, floors);
+        let own = error::relative(summary, errors, floors, error::SMALL);
         let close = |name: &String| (CLOSE[0] * asked..=CLOSE[1] * asked).contains(&sum(name));
         own.iter().all(|(name, error)| *error <= NAMED * asked || !close(name))
     });
@@ -174,8 +179,8 @@ fn tolerance_binds(summary: &Summary) -> bool {
 }
 
 /// Quantities whose error is above a limit, the largest first.
-fn large(summary: &Summary, floors: &RoundingScales, least: f64) -> Vec<(String, f64)> {
-    let mut large: Vec<(String, f64)> = error::relative(summary, &summary.errors, floors).into_iter().collect();
+fn large(summary: &Summary, floors: &RoundingScales, [least, small]: [f64; 2]) -> Vec<(String, f64)> {
+    let mut large: Vec<(String, f64)> = error::relative(summary, &summary.errors, floors, small).into_iter().collect();
     large.retain(|(_, error)| *error > least);
     large.sort_by(|a, b| b.1.total_cmp(&a.1));
     large
@@ -218,7 +223,7 @@ fn measure(
     let mut causes = changes(case, summary, cells, first, &mut found, recorder)?;
     let together = found.get(&ErrorCause::Effects);
     let share = |errors: &Figures| {
-        error::relative(summary, errors, floors)
+        error::relative(summary, errors, floors, small(accuracy))
             .into_values()
             .fold(0.0, f64::max)
     };

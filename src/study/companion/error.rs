@@ -5,12 +5,17 @@ use std::collections::BTreeMap;
 use crate::discrete::quantities::Interest;
 use crate::run::summary::{Figures, Quantity, Summary, has_unit_of_quantity, largest_error};
 use crate::study::significant::{RoundingScales, counted, counted_of_ports, counted_of_probes};
+use crate::study::sweep::unit::unit;
 
 /// Errors by the name of a quantity, probe or port, relative to its largest figure.
 pub type Relative = BTreeMap<String, f64>;
 
 /// Smallest error of a figure, relative to the largest error among the figures of its quantity.
 pub const SHARED: f64 = 0.3;
+
+/// Size of a quantity, relative to the largest with its unit, below which an accuracy that is asked for is relative to this part of that
+/// one. What remains of energies after a cycle, or of forces at a free end, would need a much finer run.
+pub const SMALL: f64 = 0.1;
 
 /// Largest displacements anywhere along the beam, which are no more certain than those at the places that are watched.
 const ANYWHERE: [(&str, &[&str]); 2] = [
@@ -33,7 +38,7 @@ pub fn errors(run: &Summary, companion: &Summary) -> Figures {
 /// Raises errors of energies that count to the residual of the energy balance, which is an error of the time steps: the discrete equations
 /// conserve energy.
 pub fn raise_to_balance(summary: &Summary, errors: &mut Figures, floors: &RoundingScales) {
-    let counted = relative(summary, errors, floors);
+    let counted = relative(summary, errors, floors, 0.0);
     for (name, quantity) in summary
         .quantities
         .iter()
@@ -113,19 +118,60 @@ fn with_errors_added(summary: &Summary, errors: &Figures) -> Summary {
     added
 }
 
-/// Largest error of each quantity, probe and port that is more than rounding, relative to its largest figure.
-pub fn relative(summary: &Summary, errors: &Figures, floors: &RoundingScales) -> Relative {
+/// Largest error of each quantity, probe and port that is more than rounding, relative to its size: its largest figure, and at least
+/// `small` of the largest with the same unit.
+pub fn relative(summary: &Summary, errors: &Figures, floors: &RoundingScales, small: f64) -> Relative {
     let added = &with_errors_added(summary, errors);
     let quantities = counted(added, floors).map(|(name, _)| (name, summary.quantities[name].size()));
     let probes = counted_of_probes(added, floors).map(|(name, _)| (name, summary.probes[name].size()));
     let ports = counted_of_ports(added, floors).map(|name| (name, summary.ports[name].size()));
-    let largest = |(name, size): (&String, f64)| Some((name.clone(), largest_error(errors.get(name)?)? / size));
+    let raised = factors_of_sizes(summary, floors, small);
+    let largest = |(name, size): (&String, f64)| {
+        let raised = raised.get(name.as_str()).copied().unwrap_or(1.0);
+        Some((name.clone(), largest_error(errors.get(name)?)? / (size * raised)))
+    };
     quantities.chain(probes).chain(ports).filter_map(largest).collect()
 }
 
+/// Factors by which `small` of the largest figure with the same unit exceeds the size of smaller ones. Angles count as displacements
+/// over the length, moments as forces at the length; an efficiency has the largest factor of its energies.
+pub fn factors_of_sizes<'a>(summary: &'a Summary, floors: &RoundingScales, small: f64) -> BTreeMap<&'a str, f64> {
+    let Summary {
+        quantities,
+        probes,
+        ports,
+        ..
+    } = summary;
+    let weighed = |name: &str, size: f64| match unit(name) {
+        "rad" => ("m", size * floors.length),
+        "N m" => ("N", size / floors.length),
+        unit => (unit, size),
+    };
+    let all = quantities.iter().chain(probes).chain(ports);
+    let sizes: Vec<(&str, (&str, f64))> = all
+        .map(|(name, q)| (name.as_str(), weighed(name, q.size())))
+        .collect();
+    let energies = summary.balances.energy_j.values().map(|energy| ("J", energy.abs()));
+    let mut largest: BTreeMap<&str, f64> = BTreeMap::new();
+    for (unit, size) in sizes.iter().map(|(_, weighed)| *weighed).chain(energies) {
+        let most = largest.entry(unit).or_insert(0.0);
+        *most = most.max(size);
+    }
+    let factor = |(unit, size): (&str, f64)| match unit == "1" || size == 0.0 {
+        true => 1.0,
+        false => (small * largest[unit] / size).max(1.0),
+    };
+    let mut factors: BTreeMap<&str, f64> = sizes.into_iter().map(|(name, size)| (name, factor(size))).collect();
+    let of_energies = [Interest::InputEnergy, Interest::HarvestedEnergy].map(|one| factors.get(one.name()).copied());
+    if let Some(efficiency) = factors.get_mut(Interest::Efficiency.name()) {
+        *efficiency = of_energies.into_iter().flatten().fold(1.0, f64::max);
+    }
+    factors
+}
+
 /// Errors of a run by their cause, the JSON pointer of a setting, as [`relative`] gives them; empty where no cause is measured.
-pub fn relative_by_cause<'a>(summary: &'a Summary, floors: &RoundingScales) -> BTreeMap<&'a str, Relative> {
+pub fn relative_by_cause<'a>(summary: &'a Summary, floors: &RoundingScales, small: f64) -> BTreeMap<&'a str, Relative> {
     let causes = summary.companion.iter().flat_map(|companion| &companion.causes);
-    let relative = causes.map(|(pointer, errors)| (pointer.as_str(), relative(summary, errors, floors)));
+    let relative = causes.map(|(pointer, errors)| (pointer.as_str(), relative(summary, errors, floors, small)));
     relative.collect()
 }

@@ -57,7 +57,7 @@ pub fn settle(
 ) -> Result<Outcome> {
     let (mut case, mut outcome) = (case.clone(), run);
     for _ in 0..REPEATS {
-        let Some(needed) = needed(&case, &outcome.summary, case.effects_tolerance())? else {
+        let Some(needed) = needed(&case, &outcome.summary, [case.effects_tolerance(), 0.0])? else {
             break;
         };
         let again = record(&needed.case, &|summary| {
@@ -71,16 +71,16 @@ pub fn settle(
     Ok(outcome)
 }
 
-/// The case with the effects whose errors are above a limit, as far as they are measured.
+/// The case with the effects whose errors are above a limit, as far as they are measured; `small` is that of [`relative_by_cause`].
 ///
 /// # Errors
 /// As [`System::new`].
-pub fn needed(case: &Case, summary: &Summary, limit: f64) -> Result<Option<CaseWithEffects>> {
+pub fn needed(case: &Case, summary: &Summary, [limit, small]: [f64; 2]) -> Result<Option<CaseWithEffects>> {
     let mut causes = summary.companion.iter().flat_map(|companion| companion.causes.keys());
     if !causes.any(|pointer| ErrorCause::is_effect(pointer)) {
         return Ok(None);
     }
-    let errors = relative_by_cause(summary, &RoundingScales::from_case(case)?);
+    let errors = relative_by_cause(summary, &RoundingScales::from_case(case)?, small);
     let Some(full) = full(case)? else {
         return Ok(None);
     };

@@ -9,7 +9,7 @@ use crate::error::Result;
 use crate::error::numbers::rounded;
 use crate::run::rounding_scales::RoundingScales;
 use crate::run::summary::Summary;
-use crate::study::companion::error::{relative, relative_by_cause};
+use crate::study::companion::error::{SMALL, relative, relative_by_cause};
 use crate::study::companion::variant::ErrorCause;
 use crate::study::companion::{companion_steps, work};
 
@@ -83,7 +83,7 @@ impl Levers {
     pub fn next(&mut self, case: &Case, summary: &Summary, floors: &RoundingScales) -> Result<Option<FinerCase>> {
         let work = work(summary) as f64;
         let first = *self.first.get_or_insert(work);
-        let mut large = relative(summary, &summary.errors, floors);
+        let mut large = relative(summary, &summary.errors, floors, SMALL);
         large.retain(|_, error| *error > self.asked);
         if large.is_empty() {
             return Ok(None);
@@ -95,7 +95,7 @@ impl Levers {
             _ => WORK[2],
         };
         let wanted = parts(summary, floors, &large);
-        let more = effects::needed(case, summary, SHARE * self.asked)?;
+        let more = effects::needed(case, summary, [SHARE * self.asked, SMALL])?;
         let budget = ((LARGEST_WORK.0 * first + LARGEST_WORK.1) / work).min(AT_ONCE);
         let [beam, fluid, decades] = self.refinement(case, &wanted, budget, per_decade.max(WORK[2]));
         if [beam, fluid, decades] == [0; 3] && more.is_none() {
@@ -118,7 +118,7 @@ impl Levers {
     /// replaces the best one, once per quantity.
     fn is_stuck(&mut self, name: &str, work: f64, error: f64) -> bool {
         let best = self.best.entry(name.into()).or_insert((work, error));
-        let falls = error <= best.1 * (work / best.0).powf(PAYS).min(1.0) || SATURATED < error && error < best.1;
+        let falls = error <= best.1 * (work / best.0).powf(PAYS).min(1.0);
         if falls || error > SHOWN * best.1 && self.shown.insert(name.into()) {
             *best = (work, error);
         }
@@ -163,7 +163,7 @@ impl Levers {
 
 /// Parts of the errors of quantities by cause: beam mesh, fluid mesh and time steps, scaled so that all causes add up to the error.
 fn parts(summary: &Summary, floors: &RoundingScales, errors: &BTreeMap<String, f64>) -> Vec<[f64; 3]> {
-    let causes = relative_by_cause(summary, floors);
+    let causes = relative_by_cause(summary, floors, SMALL);
     let of = |(name, error): (&String, &f64)| {
         let part = |errors: &BTreeMap<String, f64>| errors.get(name).copied().unwrap_or(0.0);
         let all: f64 = causes.values().map(part).sum();

@@ -7,7 +7,7 @@ use crate::case::schema::Effect;
 use crate::error::Code;
 use crate::run::rounding_scales::RoundingScales;
 use crate::run::summary::{Accuracy, ErrorEstimate, PilotRun, Summary};
-use crate::study::companion::error::{relative, relative_by_cause};
+use crate::study::companion::error::{SMALL, relative, relative_by_cause};
 use crate::study::companion::variant::ErrorCause;
 use crate::study::effects::full_model::full;
 use crate::study::refine;
@@ -22,9 +22,9 @@ pub fn conclude(
     cut_short: Option<String>,
     summary: &mut Summary,
 ) {
-    let errors = relative(summary, &summary.errors, floors);
+    let errors = relative(summary, &summary.errors, floors, SMALL);
     let known = !summary.errors.is_empty();
-    let causes = relative_by_cause(summary, floors);
+    let causes = relative_by_cause(summary, floors, SMALL);
     let part = |cause: ErrorCause, name: &str| causes.get(cause.pointer().as_str())?.get(name).copied();
     let estimate = |(name, total): (&String, &f64)| {
         let [beam, fluid, time] =
