@@ -16,7 +16,7 @@ use crate::output::report;
 use crate::results;
 use crate::results::bands::{AttenuationRecord, BandsRecord, GapRecord, LatticeModeRecord, WaveMotion, WaveRecord};
 use crate::run::bands::waves::Lattice;
-use crate::study::bands::{BandGap, BandMode, BandStructure, BandWave, bands as compute, coupling_number};
+use crate::study::bands::{BandGap, BandMode, BandStructure, BandWave, bands as compute, coupling_number, decibel};
 
 /// `bands`.
 #[derive(Debug, Args)]
@@ -58,7 +58,7 @@ pub fn bands(asked: &BandsArguments) -> Result<ExitCode> {
     if !asked.result.quiet {
         terminal::print_line(&format!("waves of {}", case.name));
     }
-    let found = compute(&case, lattice, band, asked.points)?;
+    let found = compute(&case, lattice, band, asked.points, true)?;
     let answer = answer(&case.name, band, &found);
     let written = files::write(&mut folder, &answer).map(|_| ());
     let written = written.and(report::complete(&folder, &case));
@@ -142,11 +142,6 @@ fn answer(case: &str, band: [f64; 2], found: &BandStructure) -> BandsRecord {
     }
 }
 
-/// Decibel per neper.
-fn decibel(neper: f64) -> f64 {
-    20.0 * neper / std::f64::consts::LN_10
-}
-
 fn wave(wave: &BandWave) -> WaveRecord {
     WaveRecord {
         frequency_hz: wave.frequency_hz,
@@ -160,7 +155,7 @@ fn wave(wave: &BandWave) -> WaveRecord {
 
 fn gap(gap: &BandGap) -> GapRecord {
     GapRecord {
-        motion: if gap.stretch {
+        motion: if gap.motion.stretch {
             WaveMotion::Stretch
         } else {
             WaveMotion::Bending

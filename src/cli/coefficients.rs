@@ -221,6 +221,7 @@ fn in_json(found: &Coefficients, spatial: Option<&Spatial>, energy: Option<&Stra
     all["asymmetry"] = json!(found.asymmetry);
     all["unknowns"] = json!(found.unknowns);
     all["neutral_axis_m"] = json!(neutral_axis(&found.numbers));
+    all["coupling_number"] = json!(coupling_number(&found.numbers));
     if let Some(energy) = energy {
         all["strain_energy"] = value(&|| serde_json::to_value(energy))?;
     }
@@ -240,6 +241,34 @@ fn in_json(found: &Coefficients, spatial: Option<&Spatial>, energy: Option<&Stra
 /// Height of the neutral axis above mid-height [m].
 fn neutral_axis(numbers: &Numbers) -> f64 {
     -numbers.compliance[0][1] / numbers.compliance[1][1]
+}
+
+/// Share of the bending stiffness that the fluid of sealed bladders adds; none without bladders. With the areas `c a` by a moment and the
+/// areas `P` by pressures of the rows it is `aᵀ P⁻¹ a/c_MM`, as `bands` has it for a beam.
+fn coupling_number(numbers: &Numbers) -> Option<f64> {
+    let c = &numbers.compliance;
+    let ([m, n], [p, q, x]) = ([c[1][2], c[1][3]], [c[2][2], c[3][3], c[2][3]]);
+    let own = match (p > 0.0, q > 0.0) {
+        (true, true) => (m * m * q - 2.0 * x * m * n + n * n * p) / (p * q - x * x),
+        (true, false) => m * m / p,
+        (false, true) => n * n / q,
+        (false, false) => return None,
+    };
+    Some(own / c[1][1])
+}
+
+/// Text about the coupling of bending and fluid.
+fn of_coupling(numbers: &Numbers) -> String {
+    coupling_number(numbers).map_or_else(String::new, |coupling| {
+        let raised = (1.0 - coupling).sqrt().recip();
+        format!(
+            "\ncoupling number {}: sealed bladders raise bending frequencies by {:.0} %. If fluid in tubes between the rows resonates at w, \
+             a band gap reaches from w to {} w (slcbeam bands)\n",
+            significant(coupling, 4),
+            100.0 * (raised - 1.0),
+            significant(raised, 3)
+        )
+    })
 }
 
 fn in_words(section: &Section, found: &Coefficients, spatial: Option<&Spatial>) -> String {
@@ -279,6 +308,7 @@ fn in_words(section: &Section, found: &Coefficients, spatial: Option<&Spatial>) 
         table(&headings, lines),
         found.asymmetry,
         table("< | N | M | p upper | p lower", matrix)
-    ) + &beside_mid_height(section, &found.numbers)
+    ) + &of_coupling(&found.numbers)
+        + &beside_mid_height(section, &found.numbers)
         + &open_ends(section, &found.numbers)
 }

@@ -17,7 +17,7 @@ use super::cli::run;
 use super::common::checked;
 
 /// Length 1 m, EI 1 N m^2, 1 kg/m, EA 1.2e5 N, ten segments, with attachments at the ends of segments.
-fn beam(cells: usize, attached: &Value) -> Value {
+pub(super) fn beam(cells: usize, attached: &Value) -> Value {
     let attachments: Vec<Value> = (1..10)
         .map(|k| {
             let mut one = attached.clone();
@@ -116,7 +116,7 @@ fn a_bar_with_masses_has_the_gaps_of_its_closed_form() {
 }
 
 /// The paper's beam without rotary inertia and inertia of the fluid; bladders sealed, joined in pairs across the beam, or in chains.
-fn papers(wiring: &str, [cells, along]: [usize; 2]) -> Value {
+pub(super) fn papers(wiring: &str, [cells, along]: [usize; 2]) -> Value {
     let ends = json!(["sealed", "sealed"]);
     let all = |sign: i64| (1..=10).map(|k| sign * k).collect::<Vec<i64>>();
     let lists: Vec<Vec<i64>> = match wiring {
@@ -182,7 +182,7 @@ fn a_resonance_of_tubes_opens_a_gap() {
     case["fluid"] = json!({"viscosity_pa_s": 1e-6});
     case["effects"] = json!({"rotary_inertia": "off", "unsteady_friction": "off", "bladder_inertia": "off"});
     let case = checked(&case);
-    let found = bands(&case, Lattice::new(&case).unwrap(), [25.0, 30.0], 40).unwrap();
+    let found = bands(&case, Lattice::new(&case).unwrap(), [25.0, 30.0], 40, true).unwrap();
     let coupling = coupling_number(&found.lattice).unwrap();
     assert!((coupling - 0.0701216).abs() < 1e-5, "{coupling}");
     let edges: Vec<f64> = found.standing.iter().map(|mode| mode.s.im / TAU).collect();
@@ -195,15 +195,18 @@ fn a_resonance_of_tubes_opens_a_gap() {
         .iter()
         .max_by(|a, b| a.attenuation.total_cmp(&b.attenuation))
         .unwrap();
-    assert!(gap.edges[0] > 27.0 && gap.edges[1] < 28.3 && !gap.stretch, "{gap:?}");
+    assert!(
+        gap.edges[0] > 27.0 && gap.edges[1] < 28.3 && !gap.motion.stretch,
+        "{gap:?}"
+    );
 }
 
 /// Goal: the gap of sealed bladders has exact edges with errors that cover them.
 #[test]
 fn edges_of_gaps_are_covered_by_their_errors() {
     let case = checked(&papers("sealed", [16, 2]));
-    let found = bands(&case, Lattice::new(&case).unwrap(), [3000.0, 4000.0], 60).unwrap();
-    let gap = found.gaps.iter().find(|gap| !gap.stretch).unwrap();
+    let found = bands(&case, Lattice::new(&case).unwrap(), [3000.0, 4000.0], 60, true).unwrap();
+    let gap = found.gaps.iter().find(|gap| !gap.motion.stretch).unwrap();
     for (place, exact) in [3434.535, 3536.501].into_iter().enumerate() {
         let error = (gap.edges[place] - exact).abs();
         assert!(error < 0.02 && error < gap.errors[place].unwrap(), "{gap:?}");
@@ -216,7 +219,7 @@ fn edges_of_gaps_are_covered_by_their_errors() {
 fn waves_of_a_passive_beam_decay() {
     for wiring in ["sealed", "pairs", "chains"] {
         let case = checked(&papers(wiring, [4, 2]));
-        let found = bands(&case, Lattice::new(&case).unwrap(), [1.0, 300.0], 60).unwrap();
+        let found = bands(&case, Lattice::new(&case).unwrap(), [1.0, 300.0], 60, true).unwrap();
         assert!(
             found.reciprocal && found.waves.iter().all(|wave| wave.wave_number.im >= 0.0),
             "{wiring}"
@@ -366,7 +369,7 @@ fn no_gap_is_invented() {
     for (mut case, to) in [(uniform.clone(), 60.0), (uniform, 2600.0), (metamaterial, 20.0)] {
         case.as_object_mut().unwrap().remove("$schema");
         let case = checked(&case);
-        let found = bands(&case, Lattice::new(&case).unwrap(), [1.0, to], 60).unwrap();
+        let found = bands(&case, Lattice::new(&case).unwrap(), [1.0, to], 60, true).unwrap();
         assert!(found.gaps.is_empty(), "{} to {to}: {:?}", case.name, found.gaps);
     }
 }
@@ -384,8 +387,8 @@ fn alternating_segments_have_the_gaps_of_their_transfer_matrix() {
     (0..23).for_each(|k| case["spans"][k]["length_m"] = json!(1.0 / 24.0));
     let case = checked(&case);
     for to in [600.0, 2000.0] {
-        let found = bands(&case, Lattice::new(&case).unwrap(), [1.0, to], 60).unwrap();
-        let gap = found.gaps.iter().find(|gap| !gap.stretch).unwrap();
+        let found = bands(&case, Lattice::new(&case).unwrap(), [1.0, to], 60, true).unwrap();
+        let gap = found.gaps.iter().find(|gap| !gap.motion.stretch).unwrap();
         for (edge, exact) in gap.edges.into_iter().zip([243.267, 363.060]) {
             assert!((edge - exact).abs() < 0.1, "to {to}: {gap:?}");
         }

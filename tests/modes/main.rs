@@ -4,6 +4,7 @@ mod bands;
 mod cli;
 mod common;
 mod fourth;
+mod gaps;
 mod left_out;
 mod physics;
 mod response;

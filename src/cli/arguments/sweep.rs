@@ -19,6 +19,8 @@ pub enum DesignCommand {
     Equilibrium,
     /// Small motions
     Modes,
+    /// Gaps between the waves of repeating cells
+    Bands,
 }
 
 impl From<DesignCommand> for AnalysisKind {
@@ -28,6 +30,7 @@ impl From<DesignCommand> for AnalysisKind {
             DesignCommand::Periodic => Self::Periodic,
             DesignCommand::Equilibrium => Self::Equilibrium,
             DesignCommand::Modes => Self::Modes,
+            DesignCommand::Bands => Self::Bands,
         }
     }
 }

@@ -6,6 +6,7 @@
 //! modes        small motions about the start         slcbeam modes
 //! cycle        steady cycles                         slcbeam periodic
 //! multipliers  stability of cycles                   slcbeam floquet
+//! bands        first gaps of a repeating cell        slcbeam bands
 //!
 //! outcome      figures of a case, and the outcome of its computation
 //! derivatives  derivatives of figures with respect to numbers of the case
@@ -15,6 +16,7 @@
 //! Commands and options that compute many designs (`sweep`, `fit`, `optimize`, `--uncertain`) use an analysis only
 //! through [`Analysis`]. A new analysis needs a file here and a name in [`AnalysisKind`].
 
+mod bands;
 mod cycle;
 pub mod derivatives;
 mod equilibrium;
@@ -83,7 +85,8 @@ pub trait Analysis: Sync {
 
     /// Computes the figures of a case and their derivatives with respect to `parameters`, where these exist. A
     /// computation that does not finish has no derivatives. A run uses the effects of the system `alike`. The
-    /// derivatives are exact for runs (IDA's sensitivities, [E41]), equilibria [E43], modes [E44] and cycles [E76].
+    /// derivatives are exact for runs (IDA's sensitivities, [E41]), equilibria [E43], modes [E44] and cycles [E76];
+    /// those of gaps are differences of fourth order.
     ///
     /// # Errors
     /// Those of the command; a number without derivatives.
@@ -118,6 +121,8 @@ pub enum AnalysisKind {
     Modes,
     /// `floquet`.
     Floquet,
+    /// `bands`.
+    Bands,
 }
 
 impl AnalysisKind {
@@ -129,6 +134,7 @@ impl AnalysisKind {
             Self::Equilibrium => "equilibrium",
             Self::Modes => "modes",
             Self::Floquet => "floquet",
+            Self::Bands => "bands",
         }
     }
 
@@ -140,6 +146,7 @@ impl AnalysisKind {
             Self::Equilibrium => &equilibrium::EquilibriumAnalysis,
             Self::Modes => &modes::ModesAnalysis,
             Self::Floquet => &multipliers::Multipliers,
+            Self::Bands => &bands::BandsAnalysis,
         }
     }
 }

@@ -13,6 +13,7 @@ use std::f64::consts::{PI, TAU};
 use nalgebra::Complex;
 
 use self::gaps::BandMotion;
+pub use self::gaps::GapMotion;
 use self::sample::Sample;
 use super::in_halves;
 use super::refine::finer_along_bladders;
@@ -29,6 +30,12 @@ const ROUNDING: f64 = 0.01;
 const SAME: f64 = 0.25;
 /// Median over the samples of the relative difference of waves in both directions below which a cell is reciprocal.
 const RECIPROCAL: f64 = 1e-6;
+/// Oscillations in the lowest band, its last frequency over the highest of them, and the damping ratio below which they count.
+const LOWEST: usize = 4;
+const BEYOND: f64 = 1.3;
+const STRONG: f64 = 0.5;
+/// Frequency of rigid motion, rounding errors, over the lowest of wave number π.
+const RIGID: f64 = 1e-3;
 /// Wave numbers from 0 to π of the spectrum.
 const SPECTRUM: usize = 33;
 /// Difference from a mesh of half the cells over the error: of the beam by its order, of bladders.
@@ -70,8 +77,12 @@ pub struct BandMode {
 /// A band of frequencies in which no wave of one motion passes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BandGap {
-    /// True for waves that mainly stretch the beam, false for those that bend it.
-    pub stretch: bool,
+    /// Waves that do not pass.
+    pub motion: GapMotion,
+    /// Edges on the mesh [Hz]; none for an edge of the band.
+    pub on_mesh: [Option<f64>; 2],
+    /// Wave numbers of the oscillations that its edges are, without losses.
+    pub standing: [Option<f64>; 2],
     /// Edges [Hz], extrapolated; those of the band that was computed if the gap extends beyond it.
     pub edges: [f64; 2],
     /// Estimated errors of the edges on the mesh [Hz]; unknown for an edge of the band and if another mesh has no such edge.
@@ -134,14 +145,38 @@ pub fn coupling_number(lattice: &Lattice) -> Option<f64> {
     Some(stiffness * ratio * own)
 }
 
-/// Computes the waves of a case between two frequencies [Hz], at equally spaced samples and at those that separate gaps.
+/// Band from 1e-3 of its last frequency [Hz], which is above the lowest oscillations of wave numbers 0 and π: their first gaps are in it.
+/// None if nothing oscillates.
+pub fn lowest_band(lattice: &Lattice) -> Option<[f64; 2]> {
+    let wide = [1e-6, 1e6].map(|part| part * lattice.about.frequency() / TAU);
+    let swinging = |wave_number: f64| {
+        let all = modes_at(lattice, wave_number, wide).into_iter();
+        let swinging = all.filter(|mode| mode.s.re.abs() < STRONG * mode.s.norm());
+        swinging.map(|mode| mode.s.im / TAU).collect::<Vec<f64>>()
+    };
+    let mut at = swinging(PI);
+    let least = RIGID * at.iter().copied().fold(f64::INFINITY, f64::min);
+    // cells that move alike may move as a rigid beam
+    at.extend(swinging(0.0).into_iter().filter(|hz| *hz > least));
+    at.sort_by(f64::total_cmp);
+    let last = at.get(LOWEST - 1).or(at.last())?;
+    Some([1e-3, 1.0].map(|part| part * BEYOND * last))
+}
+
+/// Computes the waves of a case between two frequencies [Hz], at equally spaced samples and at those that separate gaps; `compared` with
+/// those of other meshes.
 ///
 /// # Errors
 /// The case has no repeating cell, [`Lattice::new`]; or an interruption.
-pub fn bands(case: &Case, lattice: Lattice, band: [f64; 2], points: usize) -> Result<BandStructure> {
+pub fn bands(case: &Case, lattice: Lattice, band: [f64; 2], points: usize, compared: bool) -> Result<BandStructure> {
     let mut unknown = vec![];
     let mut others = vec![];
-    for (other, factor) in meshes(case, lattice.about.system().mesh.fourth)? {
+    let meshes = if compared {
+        meshes(case, lattice.about.system().mesh.fourth)?
+    } else {
+        vec![]
+    };
+    for (other, factor) in meshes {
         match Lattice::new(&other) {
             Ok(lattice) => others.push((lattice, factor)),
             Err(interrupted @ Error::Interrupted(_)) => return Err(interrupted),
@@ -170,9 +205,12 @@ pub fn bands(case: &Case, lattice: Lattice, band: [f64; 2], points: usize) -> Re
     // single samples beside a resonance may have large rounding errors
     let reciprocal = asymmetries[asymmetries.len() / 2] < RECIPROCAL;
     let waves: Vec<Vec<BandWave>> = samples.iter().map(|sample| sample.extrapolated(reciprocal)).collect();
+    // where waves are hidden, no gap is known
+    let whole = samples.iter().zip(&waves).filter(|(sample, _)| !sample.lost);
+    let (at, seen): (Vec<f64>, Vec<&Vec<BandWave>>) = whole.map(|(sample, waves)| (sample.hz, waves)).unzip();
     let mut gaps = vec![];
     let strongest = [false, true].map(|stretch| {
-        let motion = BandMotion::new(&all, stretch, &standing, &frequencies, &waves);
+        let motion = BandMotion::new(&all, stretch, &standing, &at, &seen);
         gaps.extend(motion.gaps());
         motion.strongest()
     });
@@ -308,6 +346,11 @@ fn is_rounded(wave: &BlochWave) -> bool {
 /// True if a wave with this phase lag and attenuation, with a rounding error, passes without loss.
 fn is_lossless(number: Complex<f64>, rounding: f64) -> bool {
     number.im.abs() <= (LOSSLESS.0 * number.re.abs()).max(LOSSLESS.1).max(rounding)
+}
+
+/// Attenuation in decibel of one in neper.
+pub fn decibel(neper: f64) -> f64 {
+    20.0 * neper / std::f64::consts::LN_10
 }
 
 /// Oscillations of a wave number in a band [Hz].

@@ -154,7 +154,12 @@ fn believed(accuracy: &Accurate, summary: &Summary, floors: &RoundingScales) -> 
         let mut errors = summary.errors.clone();
         let values = errors.values_mut().flat_map(BTreeMap::values_mut);
         values.for_each(|error| *error *= part);
-        error::relative(summary, &added(&errors, &accuracy.expected, f64::INFINITY), floors, error::SMALL)
+        error::relative(
+            summary,
+            &added(&errors, &accuracy.expected, f64::INFINITY),
+            floors,
+            error::SMALL,
+        )
     };
     let sums = with(0.0);
     let sum = |name: &String| sums.get(name).copied().unwrap_or(0.0);
@@ -180,7 +185,9 @@ fn tolerance_binds(summary: &Summary) -> bool {
 
 /// Quantities whose error is above a limit, the largest first.
 fn large(summary: &Summary, floors: &RoundingScales, [least, small]: [f64; 2]) -> Vec<(String, f64)> {
-    let mut large: Vec<(String, f64)> = error::relative(summary, &summary.errors, floors, small).into_iter().collect();
+    let mut large: Vec<(String, f64)> = error::relative(summary, &summary.errors, floors, small)
+        .into_iter()
+        .collect();
     large.retain(|(_, error)| *error > least);
     large.sort_by(|a, b| b.1.total_cmp(&a.1));
     large

@@ -148,9 +148,7 @@ pub fn factors_of_sizes<'a>(summary: &'a Summary, floors: &RoundingScales, small
         unit => (unit, size),
     };
     let all = quantities.iter().chain(probes).chain(ports);
-    let sizes: Vec<(&str, (&str, f64))> = all
-        .map(|(name, q)| (name.as_str(), weighed(name, q.size())))
-        .collect();
+    let sizes: Vec<(&str, (&str, f64))> = all.map(|(name, q)| (name.as_str(), weighed(name, q.size()))).collect();
     let energies = summary.balances.energy_j.values().map(|energy| ("J", energy.abs()));
     let mut largest: BTreeMap<&str, f64> = BTreeMap::new();
     for (unit, size) in sizes.iter().map(|(_, weighed)| *weighed).chain(energies) {
