@@ -88,11 +88,13 @@ impl SlowFlow {
     /// Frequencies [Hz] of the folds, the upper one first.
     fn folds(&self, force: f64) -> [f64; 2] {
         let peak = force * self.gain;
-        // both branches of the condition of the folds, σ = 2 κ u ± √(κ² u² - d²), meet the curve once
+        // beyond F² = 2 d³/κ each branch of the condition of the folds, σ = 2 κ u ± √(κ² u² - d²), meets the curve once; F = f/(2 ω)
         [-1.0, 1.0].map(|sign| {
             let sigma = |u: f64| 2.0 * self.kappa * u + sign * ((self.kappa * u).powi(2) - self.decay.powi(2)).sqrt();
-            let open =
-                |u: f64| u * ((sigma(u) - self.kappa * u).powi(2) + self.decay.powi(2)) - (peak * self.decay).powi(2);
+            let at_resonance = |u: f64| peak / (1.0 + sigma(u) / (TAU * self.frequency));
+            let open = |u: f64| {
+                u * ((sigma(u) - self.kappa * u).powi(2) + self.decay.powi(2)) - (at_resonance(u) * self.decay).powi(2)
+            };
             let (mut low, mut high) = (self.decay / self.kappa, peak * peak);
             for _ in 0..100 {
                 let middle = 0.5 * (low + high);
@@ -121,8 +123,8 @@ fn special(path: &CyclePath, kind: SpecialKind) -> Vec<&CycleMember> {
 
 /// Source: backbone of a clamped-clamped rectangle with fixed ends, ω/ω₀ = 1 + 0.269735 (a/h)², and the slow flow of a Duffing
 /// oscillator. Goal: at three times the force of the threshold the upper fold is on the backbone and the lower one where the slow flow
-/// says; a value between the folds has three cycles, the middle one unstable. Tolerances: the mesh error of the membrane force (2 % at 12
-/// cells, 1 % at 24), and 2 % for terms of higher order in the damping ratio of 0.001.
+/// says; a value between the folds has three cycles, the middle one unstable. Tolerance: the mesh error of the membrane force, 2 % at 12
+/// cells (1 % at 24), and terms of higher order in the relative detuning of 1.4 %.
 #[test]
 fn a_hardening_beam_folds_where_its_backbone_says() {
     let flow = SlowFlow::new();
@@ -136,7 +138,7 @@ fn a_hardening_beam_folds_where_its_backbone_says() {
     println!("upper fold over backbone: {backbone}");
     assert!((backbone - 1.0).abs() < 0.03, "{backbone}");
     let [upper, lower] = flow.folds(force);
-    for (fold, expected, tolerance) in [(folds[0], upper, 0.06), (folds[1], lower, 0.02)] {
+    for (fold, expected, tolerance) in [(folds[0], upper, 0.03), (folds[1], lower, 0.02)] {
         let (found, expected) = (fold.value - flow.frequency, expected - flow.frequency);
         println!("fold at {found} Hz above the linear frequency, slow flow {expected} Hz");
         assert!((found / expected - 1.0).abs() < tolerance, "{found} {expected}");
@@ -220,7 +222,7 @@ fn a_column_under_a_follower_load_flutters_at_a_neimark_sacker_point() {
             "ends": {"root": "clamped", "tip": {"free": {"follower_normal_n": force}}},
             "formulation": "conservative",
             "effects": {"axial_inertia": "off", "rotary_inertia": "off"},
-            "mesh": {"segments": 12, "cells_per_segment": 1},
+            "mesh": {"segments": 16, "cells_per_segment": 1},
             "time": {"end_s": 1}
         });
         case::parse(&text.to_string(), "column.json".as_ref(), ".".as_ref(), &[]).unwrap()
@@ -229,5 +231,5 @@ fn a_column_under_a_follower_load_flutters_at_a_neimark_sacker_point() {
     let found = special(&path, SpecialKind::NeimarkSacker);
     assert_eq!(found.len(), 1, "{path:?}");
     println!("flutter at {} EI/l²", found[0].value);
-    assert!((found[0].value / 20.0509 - 1.0).abs() < 0.03, "{}", found[0].value);
+    assert!((found[0].value / 20.0509 - 1.0).abs() < 0.025, "{}", found[0].value);
 }

@@ -131,6 +131,7 @@ fn balances_of_loaded_beams_close() {
         ("tank-finger", 0.3),
         ("snap-strip", 0.1),
         ("stop-harvester", 0.3),
+        ("clamped-strip", 0.2),
         ("finger-wall", 0.8),
         ("finger-disc", 0.8),
         ("tour-beam", 0.1),

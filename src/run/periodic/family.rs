@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::scene::PeriodicScene;
-use super::shooting::{Cycle, FOUND, LINEAR, MOST_DISTURBANCES, NEAR, ShootingRecord, attempt, finish, lost};
+use super::shooting::{Cycle, FOUND, MOST_DISTURBANCES, NEAR, ShootingRecord, attempt, finish, lost};
 use crate::case::schema::Case;
 use crate::dae::BeamDae;
 use crate::numerics::kernels::dot;
@@ -16,8 +16,8 @@ use crate::run::stop::INTERRUPTED;
 const DIFFERENCE: f64 = 1e-4;
 /// Largest number of Newton steps for a cycle near a prediction.
 const ITERATIONS: usize = 10;
-/// Relative residual of the linear equations for a tangent.
-const TANGENT: f64 = 1e-6;
+/// Relative residual of the bordered equations; unknowns of fast waves dominate the residual, and the slow ones matter.
+const BORDERED: f64 = 1e-6;
 /// Excess of the relative change of the period over that of the number above which the common period counts as another one.
 const PERIOD: f64 = 0.01;
 
@@ -73,12 +73,6 @@ impl FamilyState {
     pub fn direction(&self, size: f64) -> Vec<f64> {
         unit(&self.tangent, self.slope, size)
     }
-
-    /// Vector from this state to another, in units of `size`.
-    pub fn chord(&self, to: &Self, size: f64) -> Vec<f64> {
-        let states = to.y.iter().zip(&self.y).map(|(to, from)| (to - from) / size);
-        states.chain([to.coordinate - self.coordinate]).collect()
-    }
 }
 
 /// Vector of norm one along a change of state, in units of `size`, and of the coordinate.
@@ -127,6 +121,14 @@ impl CycleFamily<'_> {
             return Err(refuse(format!("the common period of the signals jumps before {value}")));
         }
         Ok((case, scene))
+    }
+
+    /// Vector from a state to another in units of `size`: differential unknowns, which determine the others, then the coordinate.
+    pub fn chord(&self, from: &FamilyState, to: &FamilyState, size: f64) -> Vec<f64> {
+        let differential = &self.reference.system.layout.differential;
+        let changes = to.y.iter().zip(&from.y).zip(differential);
+        let changes = changes.map(|((to, from), differential)| if *differential { (to - from) / size } else { 0.0 });
+        changes.chain([to.coordinate - from.coordinate]).collect()
     }
 
     /// Finds the cycle for a value from a state near it. `along` is a tangent whose sense the new one has.
@@ -202,7 +204,7 @@ impl CycleFamily<'_> {
                 size: unit_size,
                 direction,
             };
-            let step = border.solve(&scene, &mut march, &right, LINEAR)?;
+            let step = border.solve(&scene, &mut march, &right)?;
             search.newton_steps += 1;
             let change: Vec<f64> = step[..n].iter().map(|x| x * unit_size).collect();
             let value = |coordinate: f64| self.scale.value(coordinate);
@@ -210,7 +212,8 @@ impl CycleFamily<'_> {
             let correction = scene
                 .size(&change, &y)
                 .max(moved.abs() / (scene.rtol * value(coordinate).abs().max(self.scale.step.abs())));
-            if correction <= FOUND && fresh {
+            let stagnates = correction <= 1.0 && correction > 0.5 * before;
+            if fresh && (correction <= FOUND || stagnates) {
                 search.correction = correction;
                 search.residual = scene.size(&slope.open, &y);
                 search.steps_per_period = march.times().len() - 1;
@@ -224,7 +227,7 @@ impl CycleFamily<'_> {
                     cycle,
                 });
             }
-            if !correction.is_finite() || correction > 2.0 * before {
+            if !correction.is_finite() || correction > 4.0 * before {
                 break;
             }
             before = correction;
@@ -286,7 +289,7 @@ impl CycleFamily<'_> {
             direction: border,
         };
         let right = unit(&vec![0.0; n], 1.0, 1.0);
-        let found = equations.solve(scene, &mut cycle.march, &right, TANGENT)?;
+        let found = equations.solve(scene, &mut cycle.march, &right)?;
         let norm = dot(&found, &found).sqrt();
         if !(norm.is_finite() && norm > 0.0) {
             return Err(lost("the tangent of the branch is not defined".into()));
@@ -321,13 +324,7 @@ struct Border<'a> {
 
 impl Border<'_> {
     /// Solves the bordered equations by GMRES.
-    fn solve(
-        &self,
-        scene: &PeriodicScene,
-        march: &mut StepMap<BeamDae>,
-        right: &[f64],
-        tolerance: f64,
-    ) -> Result<Vec<f64>, StepError> {
+    fn solve(&self, scene: &PeriodicScene, march: &mut StepMap<BeamDae>, right: &[f64]) -> Result<Vec<f64>, StepError> {
         let n = self.by_coordinate.len();
         let most = (scene.dimension() + 1).min(MOST_DISTURBANCES);
         let map = |x: &mut [f64]| {
@@ -340,7 +337,7 @@ impl Border<'_> {
                 .for_each(|(v, slope)| *v += by * slope);
             last[0] -= along;
         };
-        let (x, _) = krylov::solve(map, right, tolerance, most);
+        let (x, _) = krylov::solve(map, right, BORDERED, most);
         match scene.stop.raised() {
             true => Err(StepError::new(0.0, INTERRUPTED)),
             false => Ok(x),

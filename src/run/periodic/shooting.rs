@@ -17,7 +17,7 @@ pub(super) const FOUND: f64 = 0.05;
 /// Newton correction, over the tolerance, at which the steps are chosen anew.
 pub(super) const NEAR: f64 = 10.0;
 /// Relative residual of the linear equations.
-pub(super) const LINEAR: f64 = 1e-3;
+const LINEAR: f64 = 1e-3;
 /// Largest number of disturbances propagated in one Newton step.
 pub(super) const MOST_DISTURBANCES: usize = 300;
 /// Largest number of Newton steps.

@@ -9,6 +9,7 @@ use super::cycles::{CycleMember, MemberKind, PathPoint, multipliers, point};
 use super::special_points::{self, JUMP, LOCATED, SHARE, SpecialKind, SpecialPoint, TRIES};
 use crate::error::Result;
 use crate::numerics::kernels::dot;
+use crate::onestep::step_map::StepError;
 use crate::run::floquet::Floquet;
 use crate::run::periodic::family::{CycleFamily, FamilyMember, FamilyState};
 use crate::run::stop::StopFlag;
@@ -107,7 +108,11 @@ impl BranchFollower<'_> {
                 }
                 continue;
             };
-            let straight = straightness(&here.0, &there.state);
+            if there.found.is_err() && matches!(aim, Aim::Distance(_)) {
+                // beyond the limits of the model, as at the resonance of an undamped beam
+                break;
+            }
+            let straight = self.straightness(&here.0, &there.state);
             if straight > VERY_STRAIGHT {
                 step = (FACTORS[1] * step).min(LONGEST);
             }
@@ -136,8 +141,17 @@ impl BranchFollower<'_> {
 
     /// True if a state is the first one of the branch again.
     fn closed(&self, first: &FamilyState, now: &FamilyState) -> bool {
-        let chord = first.chord(now, first.size);
+        let chord = self.family.chord(first, now, first.size);
         dot(&chord, &chord).sqrt() < 1e-3
+    }
+
+    /// Smallest cosine of the angle between a step and the tangents at its ends, in the unit of the smaller cycle.
+    fn straightness(&self, a: &FamilyState, b: &FamilyState) -> f64 {
+        let size = a.size.min(b.size);
+        let chord = self.family.chord(a, b, size);
+        let length = dot(&chord, &chord).sqrt();
+        let cosine = |state: &FamilyState| dot(&state.direction(size), &chord) / length;
+        cosine(a).min(cosine(b))
     }
 
     /// A step from a state: accepted if it is nearly straight.
@@ -162,7 +176,7 @@ impl BranchFollower<'_> {
             };
             Ok(match found {
                 Err(failure) => StepOutcome::Rejected(failure.what),
-                Ok((_, found)) if straightness(here, &found.state) < STRAIGHT => {
+                Ok((_, found)) if self.straightness(here, &found.state) < STRAIGHT => {
                     StepOutcome::Rejected("the step leaves the branch, or it is too long".into())
                 }
                 Ok((value, found)) => StepOutcome::Accepted(Box::new(point(value, found, begin)?)),
@@ -239,10 +253,10 @@ impl BranchFollower<'_> {
                 let at = k as f64;
                 let share = (at - a.coordinate) / (b.coordinate - a.coordinate);
                 let near = part(&a, &b, share);
-                let whole = a.chord(&b, a.size);
+                let whole = self.family.chord(&a, &b, a.size);
                 let length = dot(&whole, &whole).sqrt();
                 if let Ok(found) = self.family.at_value((at, self.values[k]), &near, &a) {
-                    let off = near.chord(&found.state, a.size);
+                    let off = self.family.chord(&near, &found.state, a.size);
                     if dot(&off, &off).sqrt() <= 0.3 * length {
                         return point(self.values[k], found, begin).map(Some);
                     }
@@ -263,13 +277,8 @@ impl BranchFollower<'_> {
     }
 
     /// Cycle of the branch at a share of the chord between two states.
-    fn middle(
-        &self,
-        a: &FamilyState,
-        b: &FamilyState,
-        share: f64,
-    ) -> std::result::Result<FamilyMember, crate::onestep::step_map::StepError> {
-        let mut direction = a.chord(b, a.size);
+    fn middle(&self, a: &FamilyState, b: &FamilyState, share: f64) -> std::result::Result<FamilyMember, StepError> {
+        let mut direction = self.family.chord(a, b, a.size);
         let length = dot(&direction, &direction).sqrt();
         direction.iter_mut().for_each(|x| *x /= length);
         self.family.across(&part(a, b, share), &direction)
@@ -355,15 +364,6 @@ fn keep(branch: &mut FollowedBranch, (value, point): (f64, PathPoint), kind: Mem
         }
     };
     (point.state, floquet)
-}
-
-/// Smallest cosine of the angle between a step and the tangents at its ends, in the unit of the smaller cycle.
-fn straightness(a: &FamilyState, b: &FamilyState) -> f64 {
-    let size = a.size.min(b.size);
-    let chord = a.chord(b, size);
-    let length = dot(&chord, &chord).sqrt();
-    let cosine = |state: &FamilyState| dot(&state.direction(size), &chord) / length;
-    cosine(a).min(cosine(b))
 }
 
 /// State at a distance along a direction.

@@ -50,31 +50,51 @@ impl SpecialKind {
         }
     }
 
-    /// Complex multiplier, real and imaginary part, that is outermost among those of this kind.
+    /// Multiplier, real and imaginary part, nearest to the place where those of this kind pass the unit circle.
     pub fn multiplier(self, floquet: &Floquet) -> Option<(f64, f64)> {
+        let distance = |(re, im): &(f64, f64)| match self {
+            Self::Fold | Self::Crossing => (re - 1.0).hypot(*im),
+            Self::PeriodDoubling => (re + 1.0).hypot(*im),
+            Self::NeimarkSacker => (re.hypot(*im) - 1.0).abs(),
+        };
         let all = floquet.multipliers.iter().map(|m| (m.re, m.im));
-        let of_kind = all.filter(|(re, im)| {
-            let angle = im.atan2(*re);
-            match self {
-                Self::Fold | Self::Crossing => angle < REAL,
-                Self::PeriodDoubling => PI - angle < REAL,
-                Self::NeimarkSacker => (REAL..=PI - REAL).contains(&angle),
-            }
-        });
-        let from_circle = |(re, im): &(f64, f64)| (re.hypot(*im) - 1.0).abs();
-        match self {
-            Self::Fold => of_kind.min_by(|a, b| from_circle(a).total_cmp(&from_circle(b))),
-            _ => of_kind.max_by(|a, b| a.0.hypot(a.1).total_cmp(&b.0.hypot(b.1))),
-        }
+        let all = all.filter(|(re, im)| self != Self::NeimarkSacker || oscillates(*re, *im));
+        all.min_by(|a, b| distance(a).total_cmp(&distance(b)))
     }
 
-    /// Test function, whose sign changes at a point of this kind.
+    /// Test function, whose sign changes at a point of this kind:
+    ///
+    /// ```text
+    /// fold               slope of the coordinate along the branch
+    /// crossing           Π (1 - μ)      period doubling  Π (1 + μ)      with both of a complex pair: continuous where pairs become real
+    /// Neimark-Sacker     largest |μ| - 1 of a complex pair
+    /// ```
     pub fn test(self, state: &FamilyState, floquet: &Floquet) -> f64 {
+        let from = |place: f64| {
+            let factor = |re: f64, im: f64| {
+                if im == 0.0 {
+                    1.0 - re * place
+                } else {
+                    (1.0 - re * place).powi(2) + im * im
+                }
+            };
+            floquet.multipliers.iter().map(|m| factor(m.re, m.im)).product()
+        };
         match self {
-            Self::Fold => state.slope / (state.slope.powi(2) + length(state).powi(2)).sqrt(),
-            _ => self.multiplier(floquet).map_or(-1.0, |(re, im)| re.hypot(im) - 1.0),
+            Self::Fold => state.slope / state.slope.hypot(length(state)),
+            Self::Crossing => from(1.0),
+            Self::PeriodDoubling => from(-1.0),
+            Self::NeimarkSacker => {
+                let pairs = floquet.multipliers.iter().filter(|m| oscillates(m.re, m.im));
+                pairs.map(|m| m.modulus - 1.0).fold(-1.0, f64::max)
+            }
         }
     }
+}
+
+/// True for a multiplier of a complex pair.
+fn oscillates(re: f64, im: f64) -> bool {
+    (REAL..=PI - REAL).contains(&im.atan2(re))
 }
 
 /// Length of the change of state along the tangent, in its unit.
