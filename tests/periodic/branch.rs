@@ -185,7 +185,8 @@ fn along_number(pointer: &str, values: &[f64], case_at: &dyn Fn(f64) -> Case) ->
     along(&request, &Evaluations::default(), &StopFlag::default(), &|_| {}).unwrap()
 }
 
-/// Goal: shaken along harder, the paper's beam loses its stability by a period doubling, and the cycle there has the multiplier -1.
+/// Goal: shaken along harder, the paper's beam loses its stability by a period doubling; cycles 0.1 % below are stable, those above are
+/// not.
 #[test]
 fn a_parametric_resonance_begins_at_a_period_doubling() {
     let pointer = "/ends/root/clamped/u3_m/sine/amplitude";
@@ -196,11 +197,22 @@ fn a_parametric_resonance_begins_at_a_period_doubling() {
     let path = along_number(pointer, &[0.02, 0.026, 0.032], &at);
     let found = special(&path, SpecialKind::PeriodDoubling);
     assert_eq!(found.len(), 1, "{path:?}");
-    let scene = PeriodicScene::new(&at(found[0].value), None).unwrap();
-    let mut cycle = shoot(&scene, None).unwrap();
-    let first = floquet::multipliers(&scene, &mut cycle, 2).multipliers[0].clone();
-    println!("{} m: {} + {} i", found[0].value, first.re, first.im);
-    assert!((first.re + 1.0).abs() < 1e-3 && first.im.abs() < 1e-3, "{first:?}");
+    let value = found[0].value;
+    println!("period doubling at {value} m");
+    // μ + 1 has the square root of the distance, hence 0.05
+    let (re, im) = found[0].special.unwrap().multiplier.unwrap();
+    assert!((re + 1.0).hypot(im) < 0.05, "{re} {im}");
+    for (factor, unstable) in [(0.999, false), (1.001, true)] {
+        let scene = PeriodicScene::new(&at(value * factor), None).unwrap();
+        let mut cycle = shoot(&scene, None).unwrap();
+        let verdict = floquet::multipliers(&scene, &mut cycle, 2).verdict;
+        assert_eq!(
+            verdict.stability == CycleStability::Unstable,
+            unstable,
+            "{}",
+            verdict.words
+        );
+    }
     let stable = |m: &CycleMember| m.floquet.verdict.stability != CycleStability::Unstable;
     let requested = path.members.iter().filter(|m| m.kind == MemberKind::Requested);
     let expected: Vec<bool> = requested.clone().map(|m| m.value < found[0].value).collect();

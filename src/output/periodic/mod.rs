@@ -189,7 +189,7 @@ fn picture(found: &CyclePath) -> Option<String> {
 
 /// Glyphs of special points, in the order of [`SpecialKind::ALL`].
 const GLYPHS: [Glyph; 4] = [
-    Glyph::Square(8.0),
+    Glyph::Square(4.0),
     Glyph::Cross(5.0),
     Glyph::Polygon(5.0, 3, -std::f64::consts::FRAC_PI_2, true),
     Glyph::Polygon(5.0, 4, 0.0, true),
