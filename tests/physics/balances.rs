@@ -35,8 +35,10 @@ fn closes(name: &str, end: f64) {
     let conservative = unlike || case.rotating_frame.is_some() || case.loads.iter().any(Load::is_rest);
     // a strain energy and unlike rows allow only one coupling and one formulation; rest curvature and rotating frames one formulation
     let nonlinear = bladders.as_ref().is_some_and(|b| b.strain_energy.is_some());
+    // with the slopes of the paper's beam the pressures of the clamped strip drive it: its motion diverges within 16 ms
+    let diverges = name == "clamped-strip";
     let couplings: &[Option<&str>] = match bladders {
-        Some(_) if nonlinear || unlike => &[Some(RECIPROCAL)],
+        Some(_) if nonlinear || unlike || diverges => &[Some(RECIPROCAL)],
         Some(_) => &[Some(PUBLISHED), Some(RECIPROCAL)],
         None => &[None],
     };
