@@ -299,6 +299,11 @@ const INDEX: &[(&str, &str, &str)] = &[
         "tests/modes/bands.rs",
         "a_bar_with_masses_has_the_gaps_of_its_closed_form",
     ),
+    (
+        "[E94]",
+        "tests/periodic/branch.rs",
+        "a_hardening_beam_folds_where_its_backbone_says",
+    ),
 ];
 
 #[test]

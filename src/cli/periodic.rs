@@ -28,7 +28,7 @@ use crate::run::summary::Status;
 use crate::study::analysis::AnalysisKind;
 use crate::study::evaluations::Evaluations;
 use crate::study::refine::{self, meshes::Meshes};
-use crate::study::stability::along;
+use crate::study::stability::{PathRequest, along};
 
 /// Number of reported multipliers.
 const COUNT: usize = 6;
@@ -183,7 +183,15 @@ fn sweep(asked: &PeriodicArguments, text: &str) -> Result<ExitCode> {
     journal::begin(&evaluations, &folder, ("periodic --sweep", &first, &settings))?;
     let stop = asked.result.wall.stop();
     let bar = progress_line::line(asked.result.quiet);
-    let found = along((&pointer, logarithmic), &cases, &evaluations, &stop, &|done| {
+    let request = PathRequest {
+        pointer: &pointer,
+        logarithmic,
+        cases: &cases,
+        case_at: &|value| {
+            resources::load_varied(&asked.case.case, [&asked.case.sets, &[format!("{pointer}={value}")]], 0)
+        },
+    };
+    let found = along(&request, &evaluations, &stop, &|done| {
         bar.set_message(format!("{done} of {}", counted(cases.len() as u64, "cycle")));
         bar.tick();
     });

@@ -143,6 +143,12 @@ impl<D: Dae> StepMap<D> {
         &self.times
     }
 
+    /// Replaces the equations by others of the same pattern, and multiplies all times by a factor. The last march remains as a guess.
+    pub fn replace(&mut self, dae: D, factor: f64) {
+        self.equations.dae = dae;
+        self.times.iter_mut().for_each(|t| *t *= factor);
+    }
+
     /// Returns the equations.
     pub fn into_dae(self) -> D {
         self.equations.dae

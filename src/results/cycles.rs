@@ -11,6 +11,7 @@ use crate::run::periodic::subharmonic::Periods;
 use crate::run::summary::Accuracy;
 use crate::run::uncertainty_band::Bands;
 use crate::study::refine::meshes::Meshes;
+pub use crate::study::stability::special_points::SpecialKind;
 pub use crate::study::stability::{CyclePath, Map};
 
 /// A steady cycle and its stability.

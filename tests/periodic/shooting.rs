@@ -15,7 +15,7 @@ use slcbeam::run::record::Memory;
 use slcbeam::run::stop::StopFlag;
 use slcbeam::run::summary::Status;
 use slcbeam::study::evaluations::Evaluations;
-use slcbeam::study::stability::along;
+use slcbeam::study::stability::{PathRequest, along};
 
 fn shipped(name: &str, sets: &[&str]) -> Case {
     let sets: Vec<String> = sets.iter().map(|s| s.to_string()).collect();
@@ -327,13 +327,15 @@ fn searches_end_when_they_are_asked_to() {
         )
     };
     let cases: Vec<(f64, Case)> = (1..=4).map(|n| (f64::from(n), case(n))).collect();
-    let found = along(
-        ("/network/permeability_factor", false),
-        &cases,
-        &Evaluations::default(),
-        &stop,
-        &|_| flag.store(true, Ordering::Relaxed),
-    )
+    let request = PathRequest {
+        pointer: "/network/permeability_factor",
+        logarithmic: false,
+        cases: &cases,
+        case_at: &|_| Ok(case(1)),
+    };
+    let found = along(&request, &Evaluations::default(), &stop, &|_| {
+        flag.store(true, Ordering::Relaxed)
+    })
     .unwrap();
     assert_eq!(found.members.len(), 1);
     let missing: Vec<_> = (2..=4).map(|n| (f64::from(n), "interrupted".to_string())).collect();

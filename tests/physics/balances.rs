@@ -35,8 +35,10 @@ fn closes(name: &str, end: f64) {
     let conservative = unlike || case.rotating_frame.is_some() || case.loads.iter().any(Load::is_rest);
     // a strain energy and unlike rows allow only one coupling and one formulation; rest curvature and rotating frames one formulation
     let nonlinear = bladders.as_ref().is_some_and(|b| b.strain_energy.is_some());
+    // with the slopes of the paper's beam the pressures of the clamped strip drive it: its motion diverges within 16 ms
+    let diverges = name == "clamped-strip";
     let couplings: &[Option<&str>] = match bladders {
-        Some(_) if nonlinear || unlike => &[Some(RECIPROCAL)],
+        Some(_) if nonlinear || unlike || diverges => &[Some(RECIPROCAL)],
         Some(_) => &[Some(PUBLISHED), Some(RECIPROCAL)],
         None => &[None],
     };
@@ -131,6 +133,7 @@ fn balances_of_loaded_beams_close() {
         ("tank-finger", 0.3),
         ("snap-strip", 0.1),
         ("stop-harvester", 0.3),
+        ("clamped-strip", 0.2),
         ("finger-wall", 0.8),
         ("finger-disc", 0.8),
         ("tour-beam", 0.1),

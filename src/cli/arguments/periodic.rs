@@ -10,8 +10,8 @@ pub struct PeriodicArguments {
     /// The case.
     #[command(flatten)]
     pub case: CaseArguments,
-    /// Cycles along a parameter, each found from the one before: a JSON pointer, its range and how many values, spread evenly or
-    /// by their logarithms, such as /network/permeability_factor=0.01:1:25:log
+    /// Cycles along a parameter, followed through folds: a JSON pointer, its range and how many values, spread evenly or by their
+    /// logarithms, such as /network/permeability_factor=0.01:1:25:log
     #[arg(long, value_name = "POINTER=FROM:TO:COUNT[:log]")]
     pub sweep: Option<String>,
     /// Look for a cycle that comes back after so many periods of what drives the case: 2 for a period that doubles

@@ -7,7 +7,7 @@ use std::path::PathBuf;
 
 pub use energies::{energies, headings as energy_headings, shown as energy_shown};
 
-use super::columns::{aligned, table};
+use super::columns::{aligned, if_any, table};
 use super::folder::ResultFolder;
 use super::numbers::{counted, quantity, shortest, significant};
 use super::plot::canvas::LineStyle;
@@ -18,10 +18,10 @@ use crate::case::readable;
 use crate::discrete::quantities::Interest;
 use crate::error::Result;
 use crate::results;
-use crate::results::cycles::{CyclePath, CycleStability, ShootingRecord};
+use crate::results::cycles::{CyclePath, CycleStability, ShootingRecord, SpecialKind};
 use crate::results::run::Summary;
 use crate::run::sensitivity::figures::FigureSensitivity;
-use crate::study::stability::CycleMember;
+use crate::study::stability::{CycleMember, MemberKind};
 
 /// Stability and search of a cycle, in its result folder.
 pub const CYCLE: &str = "cycle.json";
@@ -34,16 +34,36 @@ pub fn largest(member: &CycleMember, one: Interest) -> Option<f64> {
     member.quantities.get(one.name()).and_then(|q| q.window_max_abs)
 }
 
-/// Name of the quantity over time whose largest value is shown.
-fn short(one: Interest) -> &'static str {
-    one.columns().first().map_or(one.name(), |column| column.name())
+/// Quantities shown for cycles of a path: if the tip is held, the largest deflection in place of its own.
+pub fn shown(found: &CyclePath) -> [Interest; 3] {
+    let over = |one| found.members.iter().filter_map(|m| largest(m, one)).fold(0.0, f64::max);
+    let held = over(Interest::TipU1) <= HELD * over(Interest::LargestU1);
+    SHOWN.map(|one| {
+        if held && one == Interest::TipU1 {
+            Interest::LargestU1
+        } else {
+            one
+        }
+    })
 }
 
-/// Text of `sweep.csv`: one row per cycle. Energies, mean powers and the efficiency have the names of the table of `slcbeam sweep`.
+/// Deflection of the tip, relative to the largest one, below which the tip counts as held.
+const HELD: f64 = 1e-9;
+
+/// Name of the quantity over time whose largest value is shown.
+fn short(one: Interest) -> &'static str {
+    match one {
+        Interest::LargestU1 => "u1",
+        _ => one.columns().first().map_or(one.name(), |column| column.name()),
+    }
+}
+
+/// Text of `sweep.csv`: one row per cycle, in the order of the branches. Energies, mean powers and the efficiency have the names of the table of `slcbeam sweep`.
 pub fn csv(found: &CyclePath) -> String {
     let parameter = format!("{} [as in the case]", found.pointer);
     let motion = "largest |tip_u1| [m],largest |tip_u3| [m],largest pressure [Pa]".split(',');
     let stability = "growth rate [1/s],multiplier real part [1],multiplier imaginary part [1],steps [1],unknowns [1],wall time [s],verdict";
+    let place = "largest |u1| [m],branch [1],point,value error [as in the case]".split(',');
     let names = energies::columns(found);
     let rows = found.members.iter().map(|m| {
         let first = m.floquet.multipliers.first();
@@ -59,11 +79,14 @@ pub fn csv(found: &CyclePath) -> String {
                 .into_iter()
                 .chain([shortest(m.wall_s), m.floquet.verdict.words.clone()]),
         );
+        row.extend([number(largest(m, Interest::LargestU1)), m.branch.to_string()]);
+        row.extend([m.kind_name().into(), number(m.special.map(|s| s.value_error))]);
         row
     });
     let headings = motion
         .chain(names.iter().map(String::as_str))
-        .chain(stability.split(','));
+        .chain(stability.split(','))
+        .chain(place);
     records::text([parameter.as_str()].into_iter().chain(headings), rows)
 }
 
@@ -77,14 +100,19 @@ pub fn describe(found: &CyclePath) -> String {
         " | <{} | largest |u1| [m] | largest pressure [Pa]{energies} | <verdict",
         found.pointer
     );
-    let lines = found.members.iter().map(|m| {
+    let deflection = shown(found)[0];
+    let listed = found.members.iter().filter(|m| m.kind != MemberKind::Between);
+    let lines = listed.map(|m| {
         let number = |one| largest(m, one).map_or("–".into(), |x| significant(x, 4));
-        let (tip, pressure) = (number(Interest::TipU1), number(Interest::MaxPressure));
+        let (tip, pressure) = (number(deflection), number(Interest::MaxPressure));
         let numbers = vec![String::new(), significant(m.value, 4), tip, pressure];
         [
             numbers,
             energy_shown(m, &harvested),
-            vec![m.floquet.verdict.words.clone()],
+            vec![match m.special {
+                Some(special) => special.describe(),
+                None => m.floquet.verdict.words.clone(),
+            }],
         ]
         .concat()
     });
@@ -98,9 +126,11 @@ pub fn describe(found: &CyclePath) -> String {
     let steps: u64 = found.members.iter().map(|m| m.search.work.steps).sum();
     let solves: u64 = found.members.iter().map(|m| m.search.work.linear_solves).sum();
     let wall: f64 = found.members.iter().map(|m| m.wall_s).sum();
+    let between = found.members.iter().filter(|m| m.kind == MemberKind::Between).count();
+    let between = if_any(between, |n| format!(" ({n} between requested values)"));
     let _ = writeln!(
         text,
-        "\n{} in {} and {}, {} s",
+        "\n{}{between} in {} and {}, {} s",
         counted(found.members.len() as u64, "cycle"),
         counted(steps, "step"),
         counted(solves, "linear solve"),
@@ -116,7 +146,7 @@ pub fn write(folder: &mut ResultFolder, found: &CyclePath) -> Result<Vec<PathBuf
     folder.fill(files)
 }
 
-/// Picture of the cycles along the parameter, one panel per quantity; orange rings: unstable cycles.
+/// Picture of the cycles along the parameter, one panel per quantity. Lines are dashed beside unstable cycles.
 fn picture(found: &CyclePath) -> Option<String> {
     found.members.first()?;
     let (name, unit) = (
@@ -127,33 +157,75 @@ fn picture(found: &CyclePath) -> Option<String> {
     let panel = |name: &str, unit: &str, value: &dyn Fn(&CycleMember) -> Option<f64>| {
         let point = |m: &CycleMember| Some((m.value, value(m)?));
         let points: Vec<_> = found.members.iter().map(point).collect::<Option<_>>()?;
-        let unstable = |m: &CycleMember| m.floquet.verdict.stability == CycleStability::Unstable;
-        let of = |which: bool| {
-            let all = points.iter().zip(&found.members);
-            let all = all.filter(move |(_, m)| unstable(m) == which);
-            PictureSeries::marks(all.map(|(p, _)| *p), Glyph::Ring(3.4, 1.4), PALETTE[usize::from(which)])
+        let of = |wanted: &dyn Fn(&CycleMember) -> bool, glyph, colour| {
+            let all = points.iter().zip(&found.members).filter(|(_, m)| wanted(m));
+            PictureSeries::marks(all.map(|(p, _)| *p), glyph, colour)
         };
-        let line = PictureSeries::line(points.iter().copied(), LineStyle::solid(PALETTE[0], 1.4));
+        let requested = |m: &CycleMember| m.kind == MemberKind::Requested;
+        let mut series = branch_lines(found, &points);
+        series.push(of(&|m| requested(m) && !unstable(m), Glyph::Ring(3.4, 1.4), PALETTE[0]));
+        series.push(of(&|m| requested(m) && unstable(m), Glyph::Ring(3.4, 1.4), PALETTE[1]));
+        for (kind, glyph) in SpecialKind::ALL.iter().zip(GLYPHS) {
+            let special = |m: &CycleMember| m.special.is_some_and(|special| special.kind == *kind);
+            if found.members.iter().any(special) {
+                series.push(of(&special, glyph, PALETTE[9]).named(kind.describe()));
+            }
+        }
         let y = PictureAxis::new(name, unit, 5).with(&[0.0]);
-        Some(Panel::new(
-            (560.0, 170.0),
-            x.clone(),
-            y,
-            vec![line, of(false), of(true)],
-        ))
+        Some(Panel::new((560.0, 170.0), x.clone(), y, series))
     };
-    let quantities = SHOWN
-        .iter()
-        .map(|one| panel(&format!("largest {}", short(*one)), one.unit(), &|m| largest(m, *one)));
+    let quantities =
+        shown(found).map(|one| panel(&format!("largest {}", short(one)), one.unit(), &|m| largest(m, one)));
     // mean power and efficiency
     let harvested = energies::harvested(found)
         .into_iter()
         .filter(|f| matches!(f.unit, "W" | "1"));
     let harvested = harvested.map(|f| panel(f.words, f.unit, &|m| energies::column(&energies(m), &f.name)));
     let growth = panel("growth", "1/s", &|m| Some(m.floquet.verdict.growth_per_s));
-    let about = "one cycle a value, found by shooting; orange rings: cycles that are not stable";
-    let panels = quantities.chain(harvested).chain([growth]).flatten();
+    let about = "rings: requested values; dashed and orange: cycles that are not stable";
+    let panels = quantities.into_iter().chain(harvested).chain([growth]).flatten();
     Picture::stacked(format!("{} · steady cycles", found.case), about, panels).svg()
+}
+
+/// Glyphs of special points, in the order of [`SpecialKind::ALL`].
+const GLYPHS: [Glyph; 4] = [
+    Glyph::Square(4.0),
+    Glyph::Cross(5.0),
+    Glyph::Polygon(5.0, 3, -std::f64::consts::FRAC_PI_2, true),
+    Glyph::Polygon(5.0, 4, 0.0, true),
+];
+
+fn unstable(member: &CycleMember) -> bool {
+    member.floquet.verdict.stability == CycleStability::Unstable
+}
+
+/// Lines along the branches, in parts of equal stability; a part ends at a special point or at the first cycle of the other stability.
+fn branch_lines(found: &CyclePath, points: &[(f64, f64)]) -> Vec<PictureSeries> {
+    let mut parts: Vec<(bool, Vec<(f64, f64)>)> = vec![];
+    for (pair, members) in points.windows(2).zip(found.members.windows(2)) {
+        let [a, b] = members else { continue };
+        if a.branch != b.branch {
+            continue;
+        }
+        // at a special point the multiplier is on the unit circle: the other end decides
+        let dashed = match (a.special.is_some(), b.special.is_some()) {
+            (true, _) => unstable(b),
+            (_, true) => unstable(a),
+            _ => unstable(a) || unstable(b),
+        };
+        match parts.last_mut() {
+            Some((before, part)) if *before == dashed && part.last() == Some(&pair[0]) => part.push(pair[1]),
+            _ => parts.push((dashed, pair.to_vec())),
+        }
+    }
+    let line = |(dashed, part): (bool, Vec<(f64, f64)>)| {
+        let stroke = match dashed {
+            true => LineStyle::dashed(PALETTE[1], 1.4, (5.0, 3.0)),
+            false => LineStyle::solid(PALETTE[0], 1.4),
+        };
+        PictureSeries::line(part, stroke)
+    };
+    parts.into_iter().map(line).collect()
 }
 
 /// Text of the largest values and energies over the period. An energy is followed by the open part of its balance and its relative error;

@@ -3,19 +3,20 @@
 use serde_json::{Value, json};
 
 use super::{FolderKind, MOST_ROWS, Page, Place, capital, cells};
+use crate::discrete::quantities::Interest;
 use crate::error::Result;
 use crate::output::bands;
 use crate::output::columns::if_any;
 use crate::output::floquet::points;
 use crate::output::folder::CASE;
 use crate::output::numbers::{counted, significant};
-use crate::output::periodic::{SHOWN, energies, largest};
+use crate::output::periodic::{energies, largest, shown};
 use crate::results::cycles::{CyclePath, CycleResult, CycleStability, Map};
 use crate::run::floquet::Multiplier;
 use crate::run::floquet::shape::EnergyPart;
 use crate::study::refine::numbers;
-use crate::study::stability::CycleMember;
 use crate::study::stability::tongue::MapPoint;
+use crate::study::stability::{CycleMember, MemberKind};
 
 /// Name of the growth rate of a disturbance.
 const GROWTH: &str = "growth_per_s";
@@ -151,30 +152,46 @@ pub fn sweep(place: &Place) -> Result<Page> {
     // all cycles of one case have the same energy figures
     let figures = members.first().map_or(vec![], energies);
     let mut headings = vec![pointer.clone()];
-    headings.extend(["tip u₁ [m]", "tip u₃ [m]", "pressure [Pa]"].map(String::from));
+    let quantities = shown(&found);
+    let deflection = match quantities[0] {
+        Interest::TipU1 => "tip u₁ [m]",
+        _ => "u₁ [m]",
+    };
+    headings.extend([deflection, "tip u₃ [m]", "pressure [Pa]"].map(String::from));
     headings.extend(
         figures
             .iter()
             .flat_map(|f| [format!("{} [{}]", f.words, f.unit), "± of it".into()]),
     );
-    headings.extend(["growth [1/s]", "verdict"].map(String::from));
+    headings.extend(["growth [1/s]", "verdict", "point"].map(String::from));
     let row = |m: &CycleMember| {
         let verdict = &m.floquet.verdict;
         let mut row = vec![json!(m.value)];
-        row.extend(SHOWN.map(|one| json!(largest(m, one))));
+        row.extend(quantities.map(|one| json!(largest(m, one))));
         row.extend(energies(m).into_iter().flat_map(|f| [json!(f.value), json!(f.open)]));
-        row.extend([json!(verdict.growth_per_s), json!(verdict.words)]);
+        row.extend([json!(verdict.growth_per_s), json!(verdict.words), json!(m.kind_name())]);
         row
     };
     let spread = if *logarithmic { ":log" } else { "" };
-    let values = members.len() + missing.len();
+    let points = members.iter().filter_map(|m| m.special);
+    let special = points.map(|point| point.kind.describe()).collect::<Vec<_>>().join(", ");
+    let special = if_any(special.len(), |_| format!(" Special points: {special}."));
+    let requested = members
+        .iter()
+        .filter(|m| m.kind == MemberKind::Requested)
+        .map(|m| m.value);
+    let mut requested: Vec<f64> = requested.chain(missing.iter().map(|(value, _)| *value)).collect();
+    requested.sort_by(f64::total_cmp);
+    requested.dedup();
+    let values = requested.len();
     page.fill(json!({
         "label": "Steady cycles along a parameter",
-        "answer": format!("{} steady cycles were found for {pointer} from {} to {}; {} of them unstable.{without}",
+        "answer": format!("{} steady cycles were found for {pointer} from {} to {}; {} of them unstable.{without}{special}",
                    members.len(), significant(low, 3), significant(high, 3), members.iter().filter(unstable).count()),
         "figures": [{
             "title": "Along the parameter", "picture": place.picture("sweep.svg"),
-            "about": "Steady cycle for each value of the parameter, without its transient. Each cycle starts from the one before.",
+            "about": "Steady cycles for each value of the parameter, without their transients. A branch is followed through its folds; \
+                      dashed lines and orange rings are unstable cycles.",
         }],
         "table": {
             "title": "Every cycle", "about": "Largest values within the cycle, its energies with the open part of their balance, and the growth rate of the \

@@ -3,6 +3,7 @@
 //! ```text
 //! scene           a case in the long run: its periodic signals, its conserved volumes, its period map
 //! fluid           amount of fluid in the conserved volumes
+//! family          cycles over one number of the case, through folds
 //! shooting        Newton's iteration on the period map
 //! subharmonic     cycles that return after several periods
 //! record          one period of the cycle as a run
@@ -11,6 +12,7 @@
 //! ```
 
 pub mod balanced_cycle;
+pub mod family;
 mod fluid;
 pub mod record;
 pub mod scene;

@@ -64,7 +64,22 @@ impl PeriodicScene {
 
     /// Scene of another model of the case with settled signals; rejected as by [`System::new`].
     pub fn with_model(case: &Case, model: Model, drive: PeriodicDrive) -> Result<Self> {
-        let system = System::with(case, model)?.accepted(case)?;
+        Self::with_system(case, System::with(case, model)?.accepted(case)?, drive)
+    }
+
+    /// Scene of a changed case with the unknowns and scales of this one; `None` if its unknowns differ.
+    ///
+    /// # Errors
+    /// Those of [`PeriodicScene::new`].
+    pub fn alike(&self, case: &Case) -> Result<Option<Self>> {
+        let Some(system) = self.like(case)? else {
+            return Ok(None);
+        };
+        let drive = drive(case, &system.model, None)?;
+        Ok(Some(Self::with_system(case, system, drive)?.heeding(&self.stop)))
+    }
+
+    fn with_system(case: &Case, system: System, drive: PeriodicDrive) -> Result<Self> {
         let (guess, trapped) = guess(&system, case, drive.period)?;
         Ok(Self {
             guess,

@@ -13,13 +13,13 @@ use crate::run::state_range::StateRange;
 use crate::run::stop::INTERRUPTED;
 
 /// Newton correction, over the tolerance, at which a cycle counts as found.
-const FOUND: f64 = 0.05;
+pub(super) const FOUND: f64 = 0.05;
 /// Newton correction, over the tolerance, at which the steps are chosen anew.
-const NEAR: f64 = 10.0;
+pub(super) const NEAR: f64 = 10.0;
 /// Relative residual of the linear equations.
 const LINEAR: f64 = 1e-3;
 /// Largest number of disturbances propagated in one Newton step.
-const MOST_DISTURBANCES: usize = 300;
+pub(super) const MOST_DISTURBANCES: usize = 300;
 /// Largest number of Newton steps.
 const ITERATIONS: usize = 30;
 /// Smallest fraction of a Newton step.
@@ -143,7 +143,7 @@ pub(super) fn attempt(scene: &PeriodicScene, mut y: Vec<f64>, search: &mut Shoot
     )))
 }
 
-fn lost(how: String) -> StepError {
+pub(super) fn lost(how: String) -> StepError {
     StepError::new(0.0, format!("no cycle was found: {how}"))
 }
 
@@ -166,7 +166,7 @@ fn depart(
     Ok(back)
 }
 
-fn finish(
+pub(super) fn finish(
     scene: &PeriodicScene,
     march: StepMap<BeamDae>,
     mut y: Vec<f64>,

@@ -1,15 +1,18 @@
-//! Cycles along one parameter; each search starts from the previous cycle.
+//! Cycles along one parameter: requested values on every passage of the branch, points between, and special points.
 
 use std::time::Instant;
 
 use serde::{Deserialize, Serialize};
 
+use super::branch::BranchFollower;
+use super::special_points::SpecialPoint;
 use crate::case::schema::Case;
 use crate::error::{Code, Result};
 use crate::run::early_warnings;
 use crate::run::floquet::{self, Floquet};
 use crate::run::periodic::balanced_cycle::TighterCycle;
-use crate::run::periodic::{PeriodicScene, Settled, ShootingRecord, record, settle, shoot};
+use crate::run::periodic::family::{CycleFamily, FamilyMember, FamilyState, ParameterScale};
+use crate::run::periodic::{Cycle, PeriodicScene, Settled, ShootingRecord, record, scene, settle, shoot};
 use crate::run::record::{Control, Unrecorded};
 use crate::run::stop::{INTERRUPTED, StopFlag};
 use crate::run::summary::{Quantity, Status};
@@ -18,11 +21,33 @@ use crate::study::evaluations::Evaluations;
 /// Number of multipliers computed.
 const COUNT: usize = 4;
 
+/// Reason why a cycle is a member of a path.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum MemberKind {
+    /// Its value was requested.
+    #[default]
+    Requested,
+    /// A step along the branch between requested values.
+    Between,
+    /// A special point.
+    Special,
+}
+
 /// Cycle at one value.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct CycleMember {
     /// Value of the parameter.
     pub value: f64,
+    /// Reason why it is a member.
+    #[serde(default)]
+    pub kind: MemberKind,
+    /// Number of the branch, from 0; a further one begins at a value that the branches before do not reach.
+    #[serde(default)]
+    pub branch: usize,
+    /// Kind and accuracy of a special point.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub special: Option<SpecialPoint>,
     /// Number of unknowns.
     pub unknowns: usize,
     /// Search for the cycle.
@@ -38,6 +63,17 @@ pub struct CycleMember {
     pub wall_s: f64,
 }
 
+impl CycleMember {
+    /// Description of its kind.
+    pub fn kind_name(&self) -> &'static str {
+        match (self.kind, self.special) {
+            (_, Some(special)) => special.kind.describe(),
+            (MemberKind::Between, _) => "between",
+            _ => "requested",
+        }
+    }
+}
+
 /// Cycles at all values.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct CyclePath {
@@ -47,7 +83,7 @@ pub struct CyclePath {
     pub pointer: String,
     /// True if the values are evenly spaced in their logarithms.
     pub logarithmic: bool,
-    /// Cycles.
+    /// Cycles in the order of the branches.
     pub members: Vec<CycleMember>,
     /// Values without a cycle, with reasons.
     pub missing: Vec<(f64, String)>,
@@ -55,43 +91,75 @@ pub struct CyclePath {
     pub warnings: Vec<String>,
 }
 
-/// Result at one value, with the state that the next one needs.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-struct Step {
-    found: std::result::Result<CycleMember, String>,
-    /// Warning that its energies do not add up.
-    open: Option<String>,
-    /// State of its cycle.
-    state: Option<Vec<f64>>,
+/// Requested cycles along a parameter.
+pub struct PathRequest<'a> {
+    /// JSON pointer of the parameter.
+    pub pointer: &'a str,
+    /// True if the values are evenly spaced in their logarithms.
+    pub logarithmic: bool,
+    /// Values, ascending or descending, each with its case.
+    pub cases: &'a [(f64, Case)],
+    /// Returns the case for any value between.
+    pub case_at: &'a dyn Fn(f64) -> Result<Case>,
 }
 
-/// Finds the cycle of every case; `report` is called with the number of finished cases. Cases not finished at a stop are
-/// missing. If turbines harvest, tolerances are tightened until the energies of each cycle add up, as for one cycle.
-/// Cycles stored in `evaluations` are not searched again.
+/// A point of a branch, with the state that the next one needs.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub(super) struct PathPoint {
+    /// The cycle, or the reason why its period could not be recorded.
+    pub found: std::result::Result<CycleMember, String>,
+    /// Warning that its energies do not add up.
+    pub open: Option<String>,
+    /// State of its cycle.
+    pub state: FamilyState,
+}
+
+/// First point of a branch.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+struct BranchStart {
+    found: std::result::Result<CycleMember, String>,
+    open: Option<String>,
+    /// State of its cycle.
+    y: Option<Vec<f64>>,
+    /// Position on the branch; `None` if the cycle has no neighbours that could be followed.
+    state: Option<FamilyState>,
+}
+
+/// Finds the cycles at all values and follows their branches through folds; `report` is called with the number of finished values.
+/// Values not finished at a stop are missing. If turbines harvest, tolerances are tightened until the energies of each cycle add up,
+/// as for one cycle. Cycles stored in `evaluations` are not searched again.
+///
+/// A branch begins at the first value and ends where it leaves the range of values. It has a member at every requested value, on every
+/// passage. If values remain that no branch reaches, a further branch begins at the first of them.
 ///
 /// # Errors
 /// A case without a period, a beam that nothing holds.
 pub fn along(
-    (pointer, logarithmic): (&str, bool),
-    cases: &[(f64, Case)],
+    request: &PathRequest,
     evaluations: &Evaluations,
     stop: &StopFlag,
     report: &dyn Fn(usize),
 ) -> Result<CyclePath> {
+    let cases = request.cases;
     let mut found = CyclePath {
         case: cases.first().map_or(String::new(), |(_, case)| case.name.clone()),
-        pointer: pointer.into(),
-        logarithmic,
+        pointer: request.pointer.into(),
+        logarithmic: request.logarithmic,
         members: vec![],
         missing: vec![],
         warnings: match cases.first() {
-            Some((_, case)) => early_warnings::without_outputs(case, &crate::run::periodic::scene::system(case)?),
+            Some((_, case)) => early_warnings::without_outputs(case, &scene::system(case)?),
             None => vec![],
         },
     };
+    let values: Vec<f64> = cases.iter().map(|(value, _)| *value).collect();
+    let mut finished = vec![false; values.len()];
     let mut before: Option<(PeriodicScene, Vec<f64>)> = None;
     let mut open: Vec<(f64, String)> = vec![];
-    for (k, (value, case)) in cases.iter().enumerate() {
+    let mut branch = 0;
+    while let Some(k) = finished.iter().position(|done| !done) {
+        finished[k] = true;
+        let (value, case) = &cases[k];
         if stop.raised() {
             found.missing.push((*value, INTERRUPTED.into()));
             continue;
@@ -103,17 +171,44 @@ pub fn along(
             found.warnings.extend(scene.trapped.clone());
         }
         let from = before.as_ref().and_then(|(old, y)| scene.take_over(old, y));
-        let compute = || step((*value, case), scene.clone(), from.as_deref(), begin);
-        let step = evaluations.try_get(&(k, value), &|| stop.raised(), compute)?;
-        match step.found {
-            Ok(member) => found.members.push(member),
+        let family = (values.len() > 1).then(|| CycleFamily {
+            reference: scene.clone(),
+            case_at: request.case_at,
+            scale: ParameterScale::new(&values, request.logarithmic),
+        });
+        let compute = || start((k, *value, case), &scene, from.as_deref(), family.as_ref(), begin);
+        let start = evaluations.try_get(&(k, value), &|| stop.raised(), compute)?;
+        open.extend(start.open.map(|warning| (*value, warning)));
+        match start.found {
+            Ok(member) => found.members.push(CycleMember { branch, ..member }),
             Err(why) => found.missing.push((*value, why)),
         }
-        open.extend(step.open.map(|warning| (*value, warning)));
-        if let Some(y) = step.state {
-            before = Some((scene, y));
+        report(finished.iter().filter(|done| **done).count());
+        let Some(mut y) = start.y else { continue };
+        if let (Some(family), Some(state), Some(floquet)) = (
+            family,
+            start.state,
+            found.members.last().map(|member| member.floquet.clone()),
+        ) {
+            let follower = BranchFollower {
+                family,
+                values: &values,
+                evaluations: evaluations.scoped(&format!("from {k}")),
+                stop,
+            };
+            let followed = follower.follow((state, floquet), &mut finished, report)?;
+            y = followed.last;
+            open.extend(followed.open);
+            found.missing.extend(followed.missing);
+            branch += usize::from(followed.ended);
+            let number = found.members.last().map_or(0, |member| member.branch);
+            let members = followed.members.into_iter();
+            found.members.extend(members.map(|member| CycleMember {
+                branch: number,
+                ..member
+            }));
         }
-        report(k + 1);
+        before = Some((scene, y));
     }
     if let Some((value, warning)) = open.first() {
         let others = match open.len() - 1 {
@@ -122,22 +217,47 @@ pub fn along(
         };
         found
             .warnings
-            .push(format!("{warning} (at {pointer} = {value}{others})"));
+            .push(format!("{warning} (at {} = {value}{others})", request.pointer));
     }
     Ok(found)
 }
 
-fn step((value, case): (f64, &Case), scene: PeriodicScene, from: Option<&[f64]>, begin: Instant) -> Result<Step> {
-    let cycle = match shoot(&scene, from) {
+/// First cycle of a branch.
+fn start(
+    (k, value, case): (usize, f64, &Case),
+    scene: &PeriodicScene,
+    from: Option<&[f64]>,
+    family: Option<&CycleFamily>,
+    begin: Instant,
+) -> Result<BranchStart> {
+    let mut cycle = match shoot(scene, from) {
         Ok(cycle) => cycle,
         Err(impasse) => {
-            return Ok(Step {
+            return Ok(BranchStart {
                 found: Err(impasse.what),
                 open: None,
+                y: None,
                 state: None,
             });
         }
     };
+    let state = family.and_then(|family| family.position(scene, &mut cycle, k as f64, None).ok());
+    let y = Some(cycle.y.clone());
+    let (found, open) = describe((value, case.clone(), scene.clone(), cycle), begin)?;
+    Ok(BranchStart { found, open, y, state })
+}
+
+/// Point of a branch from a cycle of a family.
+pub(super) fn point(value: f64, of: FamilyMember, begin: Instant) -> Result<PathPoint> {
+    let state = of.state;
+    let (found, open) = describe((value, of.case, of.scene, of.cycle), begin)?;
+    Ok(PathPoint { found, open, state })
+}
+
+type Described = (std::result::Result<CycleMember, String>, Option<String>);
+
+/// Stability and quantities of a cycle, and a warning that its energies do not add up.
+fn describe((value, case, scene, cycle): (f64, Case, PeriodicScene, Cycle), begin: Instant) -> Result<Described> {
     let harvests = case.network.as_ref().is_some_and(|n| !n.turbines.is_empty());
     let Settled {
         case,
@@ -145,31 +265,35 @@ fn step((value, case): (f64, &Case), scene: PeriodicScene, from: Option<&[f64]>,
         mut cycle,
         refined,
     } = match harvests {
-        true => settle(case, scene, cycle)?,
-        false => Settled::as_found(case, scene, cycle),
+        true => settle(&case, scene, cycle)?,
+        false => Settled::as_found(&case, scene, cycle),
     };
-    let floquet = floquet::multipliers(&scene, &mut cycle, COUNT);
+    let floquet = multipliers(&scene, &mut cycle);
     let wall_s = begin.elapsed().as_secs_f64();
     let summary = record::record(&case, &scene, &cycle, &mut Unrecorded(|_| Control::Continue))?.summary;
     let finished = summary.status == Status::Finished;
     let mark = Code::EnergyFigure.id();
-    Ok(Step {
-        open: summary
-            .warnings
-            .into_iter()
-            .find(|warning| finished && warning.starts_with(mark)),
-        found: match finished {
-            true => Ok(CycleMember {
-                value,
-                unknowns: scene.system.layout.len,
-                search: cycle.search,
-                floquet,
-                quantities: summary.quantities,
-                refined,
-                wall_s,
-            }),
-            false => Err(summary.reason.unwrap_or_default()),
-        },
-        state: Some(cycle.y),
-    })
+    let open = summary.warnings.into_iter();
+    let open = open.into_iter().find(|warning| finished && warning.starts_with(mark));
+    let found = match finished {
+        true => Ok(CycleMember {
+            value,
+            kind: MemberKind::Requested,
+            branch: 0,
+            special: None,
+            unknowns: scene.system.layout.len,
+            search: cycle.search,
+            floquet,
+            quantities: summary.quantities,
+            refined,
+            wall_s,
+        }),
+        false => Err(summary.reason.unwrap_or_default()),
+    };
+    Ok((found, open))
+}
+
+/// Multipliers of a cycle of a path.
+pub(super) fn multipliers(scene: &PeriodicScene, cycle: &mut Cycle) -> Floquet {
+    floquet::multipliers(scene, cycle, COUNT)
 }

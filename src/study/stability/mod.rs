@@ -2,11 +2,15 @@
 //!
 //! ```text
 //! tongue  growth over frequency and amplitude of a shaken root, compared with Mathieu's equation
-//! cycles  cycles along one parameter; each search starts from the previous cycle
+//! cycles  cycles along one parameter
+//! branch  follows a branch of cycles through folds
+//! special_points  folds and losses of stability of a branch
 //! ```
 
+mod branch;
 pub mod cycles;
+pub mod special_points;
 pub mod tongue;
 
-pub use cycles::{CycleMember, CyclePath, along};
+pub use cycles::{CycleMember, CyclePath, MemberKind, PathRequest, along};
 pub use tongue::{Map, Sheet, map};
