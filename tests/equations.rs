@@ -299,6 +299,12 @@ const INDEX: &[(&str, &str, &str)] = &[
         "tests/modes/bands.rs",
         "a_bar_with_masses_has_the_gaps_of_its_closed_form",
     ),
+    (
+        "[E97]",
+        "tests/modes/reduced.rs",
+        "a_model_of_the_actuator_has_few_states",
+    ),
+    ("[E96]", "tests/modes/reduced.rs", "a_response_has_the_stated_error"),
 ];
 
 #[test]

@@ -6,6 +6,7 @@ mod common;
 mod fourth;
 mod left_out;
 mod physics;
+mod reduced;
 mod response;
 mod selection;
 mod sizes;
