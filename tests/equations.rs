@@ -300,11 +300,11 @@ const INDEX: &[(&str, &str, &str)] = &[
         "a_bar_with_masses_has_the_gaps_of_its_closed_form",
     ),
     (
-        "[E97]",
+        "[E94]",
         "tests/modes/reduced.rs",
         "a_model_of_the_actuator_has_few_states",
     ),
-    ("[E96]", "tests/modes/reduced.rs", "a_response_has_the_stated_error"),
+    ("[E95]", "tests/modes/reduced.rs", "a_response_has_the_stated_error"),
 ];
 
 #[test]

@@ -94,9 +94,7 @@ impl RationalFit {
                     break;
                 }
                 nodes.push(worst);
-                for beside in worst.saturating_sub(1)..count.min(worst + 2) {
-                    errors[beside] = 0.0;
-                }
+                errors[worst.saturating_sub(1)..count.min(worst + 2)].fill(0.0);
             }
         }
         best.unwrap_or(Self {

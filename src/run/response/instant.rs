@@ -194,7 +194,7 @@ impl<'a> Instant<'a> {
         let mut rows = vec![[vec![0.0; n], vec![0.0; n]]; chosen.len()];
         for rate in [false, true] {
             // most outputs depend on few unknowns: ranges without influence are omitted, others halved
-            let mut ranges = vec![0..n];
+            let mut ranges: Vec<Range<usize>> = std::iter::once(0..n).collect();
             // the first solution reports an interrupted response
             while let Some(range) = ranges.pop().filter(|_| !halt::asked()) {
                 let first = self.over(&range, rate, OF_STATE[0], chosen);

@@ -2,10 +2,10 @@
 
 use nalgebra::Complex;
 
-use super::super::in_halves;
 use crate::error::Result;
 use crate::numerics::rational::{AxisSamples, RationalFit, relative_error};
 use crate::run::response::LinearResponse;
+use crate::study::in_halves;
 
 /// Samples of a decade at first, and in all.
 const PER_DECADE: f64 = 12.0;
@@ -24,7 +24,7 @@ const UNDAMPED: f64 = 1e-7;
 /// Ratio of imaginary to real part up to which a response is static: its real part differs from the static gain by the square.
 const QUASI_STATIC: f64 = 1e-4;
 
-/// `[E96]` A rational function r that approximates all outputs over a band, with samples of the response H at s = i ω:
+/// `[E95]` A rational function r that approximates all outputs over a band, with samples of the response H at s = i ω:
 ///
 /// ```text
 /// |r - H| ≤ e max(|H|, median |H|)
@@ -40,6 +40,8 @@ pub struct ApproximatedResponse {
     pub fit: RationalFit,
     /// e.
     pub error: f64,
+    /// Error at each sample, relative to the same reference.
+    pub errors: Vec<f64>,
     /// Median amplitude of each output.
     pub medians: Vec<f64>,
 }
@@ -101,12 +103,14 @@ impl ApproximatedResponse {
             }
             let fit = best.map_or_else(|| RationalFit::new(&samples, &medians, OF_FIT * asked), |(_, fit)| fit);
             let all = samples.omega.iter().zip(&samples.values);
-            let errors = all.map(|(omega, values)| relative_error(&fit.at(*omega), values, &medians));
-            let error = errors.fold(0.0, f64::max);
+            let errors: Vec<f64> = all
+                .map(|(omega, values)| relative_error(&fit.at(*omega), values, &medians))
+                .collect();
             return Ok(Self {
+                error: errors.iter().copied().fold(0.0, f64::max),
+                errors,
                 samples,
                 fit,
-                error,
                 medians,
             });
         }
@@ -115,6 +119,16 @@ impl ApproximatedResponse {
     /// Transfer functions of all outputs at a frequency [Hz].
     pub fn at(&self, hz: f64) -> Vec<Complex<f64>> {
         self.fit.at(std::f64::consts::TAU * hz)
+    }
+
+    /// Error at a frequency [Hz]: the larger one of the samples on either side. Rounding errors at sharp peaks remain there.
+    pub fn error_at(&self, hz: f64) -> f64 {
+        let next = self
+            .samples
+            .omega
+            .partition_point(|omega| *omega < std::f64::consts::TAU * hz);
+        let beside = &self.errors[next.saturating_sub(1)..self.errors.len().min(next + 1)];
+        beside.iter().copied().fold(0.0, f64::max)
     }
 }
 

@@ -141,11 +141,12 @@ pub fn respond(case: &Case, request: &Request, response: LinearResponse) -> Resu
     let mut curves = vec![];
     for (place, output) in response.outputs.iter().enumerate() {
         let values: Vec<_> = values.iter().map(|all| all[place]).collect();
-        let error = |value: &Complex<f64>| approximated.error * value.norm().max(approximated.medians[place]);
+        let median = approximated.medians[place];
+        let error = |(hz, value): (&f64, &Complex<f64>)| approximated.error_at(*hz) * value.norm().max(median);
         curves.push(OutputResponse {
             output: output.clone(),
             peaks: peaks(&approximated, place, &frequencies, &values, &poles),
-            errors: values.iter().map(error).collect(),
+            errors: frequencies.iter().zip(&values).map(error).collect(),
             values,
         });
     }

@@ -26,7 +26,7 @@ const STABLE: f64 = 1e-7;
 /// Samples of the band at which models are compared.
 const DENSE: usize = 300;
 
-/// `[E97]` Partial fractions with the poles p of the model, in real blocks, and the static gain H(0) if there is one:
+/// `[E94]` Partial fractions with the poles p of the model, in real blocks, and the static gain H(0) if there is one:
 ///
 /// ```text
 /// H(s) ≈ H(0) + Σ r [φ(s) - φ(0)] + Σ e_k s^k        q' = p q + |p| u        φ = |p|/(s - p)        k ≤ highest rate of u
@@ -161,7 +161,7 @@ impl PartialFractions {
         for (p, median) in medians.iter().enumerate() {
             let rest = gain.map_or(C::default(), |gain| gain[p]);
             let weight = |k: usize| 1.0 / data.values[k][p].norm().max(*median);
-            let part = |i: usize, x: C| if i % 2 == 0 { x.re } else { x.im };
+            let part = |i: usize, x: C| if i.is_multiple_of(2) { x.re } else { x.im };
             let mut matrix = DMatrix::from_fn(2 * rows.len(), columns, |i, j| weight(i / 2) * part(i, rows[i / 2][j]));
             let scales: Vec<f64> = matrix
                 .column_iter()
