@@ -304,6 +304,12 @@ const INDEX: &[(&str, &str, &str)] = &[
         "tests/periodic/branch.rs",
         "a_hardening_beam_folds_where_its_backbone_says",
     ),
+    (
+        "[E95]",
+        "tests/modes/reduced.rs",
+        "a_model_of_the_actuator_has_few_states",
+    ),
+    ("[E96]", "tests/modes/reduced.rs", "a_response_has_the_stated_error"),
 ];
 
 #[test]

@@ -7,8 +7,9 @@ use std::process::ExitCode;
 use clap::{Args, ValueEnum};
 use serde_json::json;
 
-use super::response::cautions;
+use super::response::{cautions, check_band};
 use crate::case;
+use crate::error::numbers::error_percent;
 use crate::error::{Code, Error, Result};
 use crate::output::columns::warnings;
 use crate::output::export::{self, ExportedFiles, instants, tables, vtk};
@@ -18,8 +19,9 @@ use crate::output::numbers::{counted, significant};
 use crate::output::state_space as files;
 use crate::run::record::HistoryColumn;
 use crate::run::response::LinearResponse;
-use crate::run::response::state_space::StateSpace;
-use crate::study::response::growing;
+use crate::run::response::state_space::{ModelReduction, StateSpace};
+use crate::study::response::reduced::reduce;
+use crate::study::response::{growing, poles};
 
 /// `export`.
 #[derive(Debug, Args)]
@@ -44,6 +46,16 @@ pub struct ExportArguments {
     /// The state about which, as that of `response`
     #[arg(long, value_name = "SECONDS", requires = "state_space", allow_hyphen_values = true, value_parser = super::progress_line::instant)]
     pub at: Option<f64>,
+    /// Write a reduced model instead: the smallest found whose error is at most this fraction of the amplitude, or of its median over
+    /// the band
+    #[arg(long, value_name = "FRACTION", requires = "state_space", allow_negative_numbers = true, value_parser = super::progress_line::ratio)]
+    pub error: Option<f64>,
+    /// First frequency of the reduced model [Hz]; its static gain is exact too
+    #[arg(long, value_name = "HZ", default_value_t = 0.01, requires = "error", allow_negative_numbers = true, value_parser = super::progress_line::frequency)]
+    pub from: f64,
+    /// Last frequency of the reduced model [Hz]
+    #[arg(long, value_name = "HZ", default_value_t = 200.0, requires = "error", allow_negative_numbers = true, value_parser = super::progress_line::frequency)]
+    pub to: f64,
     /// Formats: csv/FIELD.csv with a row an instant and a column a place; vtk/CASE.pvd with beam, bladders and tubes
     #[arg(
         long,
@@ -131,6 +143,8 @@ pub fn export(asked: &ExportArguments) -> Result<ExitCode> {
     Ok(ExitCode::SUCCESS)
 }
 
+/// Smallest error of a reduced model: below it, rounding errors of responses near sharp peaks.
+const MIN_ERROR: f64 = 1e-6;
 /// Largest number of states of a model, whose matrices are full.
 const MOST_STATES: usize = 4000;
 
@@ -141,15 +155,30 @@ fn state_space(asked: &ExportArguments, file: &Path, input: &str) -> Result<Exit
             file.display()
         )));
     }
+    if let Some(error) = asked.error {
+        check_band([asked.from, asked.to], 2, asked.from < asked.to, "below")?;
+        if !(MIN_ERROR..1.0).contains(&error) {
+            return Err(Error::Usage(format!("--error {error}: expected {MIN_ERROR} to 1")));
+        }
+    }
     let case = case::load(&asked.dir, &asked.sets)?;
     let response = LinearResponse::new(&case, input, &asked.output, asked.at)?;
-    if response.about.y.len() > MOST_STATES {
-        return Err(Error::Usage(format!(
-            "--state-space: {} are too many for full matrices (at most {MOST_STATES}); use fewer /mesh/cells_per_segment",
-            counted(response.about.y.len() as u64, "unknown")
-        )));
-    }
-    let model = StateSpace::new(&response)?;
+    let (model, growing) = match asked.error {
+        Some(error) => {
+            let band = [asked.from, asked.to];
+            let poles = poles(&case, asked.at, &response, band);
+            let known = poles.as_ref().cloned().unwrap_or_default();
+            let model = reduce(&response, band, &known, error)?;
+            (model, poles.map(|poles| poles.growing.len()))
+        }
+        None if response.about.y.len() > MOST_STATES => {
+            return Err(Error::Usage(format!(
+                "--state-space: {} are too many for full matrices (at most {MOST_STATES}); use --error 1e-3 for a reduced model",
+                counted(response.about.y.len() as u64, "unknown")
+            )));
+        }
+        None => (StateSpace::new(&response)?, growing(&case, asked.at, &response)),
+    };
     let outputs: Vec<String> = response.outputs.iter().map(HistoryColumn::key).collect();
     files::write(
         file,
@@ -160,23 +189,45 @@ fn state_space(asked: &ExportArguments, file: &Path, input: &str) -> Result<Exit
         &model,
     )?;
     let states = model.b.len();
-    let found = match growing(&case, asked.at, &response) {
+    let found = match growing {
         Ok(growing) => cautions(growing, response.about.moving()),
         Err(why) => vec![Code::ErrorEstimate.warning(format!("not known: poles: {why}"))],
     };
     if asked.json {
-        let answer = json!({"path": file, "states": states, "outputs": outputs, "input": response.input, "input_rate": model.input_rate, "warnings": found});
+        let mut answer = json!({"path": file, "states": states, "outputs": outputs, "input": response.input, "input_rate": model.input_rate, "warnings": found});
+        if let Some(reduction) = model.reduction {
+            let [modes, kept] = reduction.modes;
+            answer["reduction"] = json!({"band_hz": reduction.band, "error": reduction.error, "static_gain": reduction.static_gain, "modes": modes, "modes_in_model": kept, "solved": reduction.solved});
+        }
         super::print(&format!("{answer:#}\n"))?;
     } else {
         let of = ["", "rate of ", "second rate of "][model.input_rate.min(2)];
         super::print(&format!(
-            "{}, input {of}{}, outputs {}\n{}\n{}",
+            "{}, input {of}{}, outputs {}\n{}{}\n{}",
             counted(states as u64, "state"),
             response.input,
             outputs.join(", "),
+            model
+                .reduction
+                .map_or_else(String::new, |reduction| describe(&reduction)),
             file.display(),
             warnings(&found)
         ))?;
     }
     Ok(ExitCode::SUCCESS)
+}
+
+/// Text of a reduction.
+fn describe(reduction: &ModelReduction) -> String {
+    let [from, to] = reduction.band.map(|hz| significant(hz, 4));
+    let [modes, kept] = reduction.modes;
+    format!(
+        "error from {from} to {to} Hz: at most {} of the amplitude, or of its median over the band if that is larger (solved at {} frequencies)\n\
+         static gain: {}\n\
+         poles: {kept} of the {} in the band; the outputs do not show the others\n",
+        error_percent(reduction.error),
+        reduction.solved,
+        if reduction.static_gain { "exact" } else { "none" },
+        counted(modes as u64, "mode"),
+    )
 }

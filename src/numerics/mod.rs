@@ -19,6 +19,7 @@
 //! | [`rng`], [`sobol`] | pseudo-random numbers, Sobol sequences |
 //! | [`normal`] | quantiles of the normal distribution |
 //! | [`krylov`] | linear systems and eigenvalues of a map given as a function |
+//! | [`rational`] | rational functions through samples |
 
 pub mod angle;
 pub mod bayesian_least_squares;
@@ -31,6 +32,7 @@ pub mod levenberg;
 pub mod normal;
 pub mod planar;
 mod ramp;
+pub mod rational;
 pub mod regression;
 pub mod rng;
 pub mod scalar;

@@ -29,6 +29,11 @@ struct Named<'a> {
     x0: &'a [f64],
     u0: f64,
     z0: &'a [f64],
+    /// First and last frequency of a reduced model, and its largest error over them.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    band_hz: Option<[f64; 2]>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    error: Option<f64>,
 }
 
 /// Writes a model to a file, `.npz`, `.mat` or `.json`.
@@ -54,6 +59,8 @@ pub fn write(path: &Path, case: &str, input: &str, outputs: Vec<String>, at_s: f
                 x0: &model.x0,
                 u0: model.u0,
                 z0: &model.z0,
+                band_hz: model.reduction.map(|reduction| reduction.band),
+                error: model.reduction.map(|reduction| reduction.error),
             };
             (serde_json::to_string(&named).unwrap_or_default() + "\n").into_bytes()
         }
@@ -69,10 +76,10 @@ pub fn write(path: &Path, case: &str, input: &str, outputs: Vec<String>, at_s: f
 }
 
 /// Matrices of a file: name, rows, columns, entries row by row.
-fn matrices(model: &StateSpace) -> [(&'static str, [usize; 2], Vec<f64>); 8] {
+fn matrices(model: &StateSpace) -> Vec<(&'static str, [usize; 2], Vec<f64>)> {
     let [n, outputs] = [model.b.len(), model.d.len()];
     let all = |rows: &[Vec<f64>]| rows.iter().flatten().copied().collect::<Vec<f64>>();
-    [
+    let mut matrices = vec![
         ("A", [n, n], all(&model.a)),
         ("B", [n, 1], model.b.clone()),
         ("C", [outputs, n], all(&model.c)),
@@ -81,7 +88,12 @@ fn matrices(model: &StateSpace) -> [(&'static str, [usize; 2], Vec<f64>); 8] {
         ("x0", [n, 1], model.x0.clone()),
         ("u0", [1, 1], vec![model.u0]),
         ("z0", [outputs, 1], model.z0.clone()),
-    ]
+    ];
+    if let Some(reduction) = model.reduction {
+        matrices.push(("band_hz", [2, 1], reduction.band.to_vec()));
+        matrices.push(("error", [1, 1], vec![reduction.error]));
+    }
+    matrices
 }
 
 fn npz(model: &StateSpace) -> io::Result<Vec<u8>> {

@@ -7,6 +7,7 @@ mod fourth;
 mod gaps;
 mod left_out;
 mod physics;
+mod reduced;
 mod response;
 mod selection;
 mod sizes;

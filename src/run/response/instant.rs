@@ -1,5 +1,7 @@
 //! Derivatives of residual and outputs at one instant by the input, its rates and the state.
 
+use std::ops::Range;
+
 use super::motion;
 use crate::dae::{BeamDae, Dae as _};
 use crate::discrete::ledger;
@@ -17,6 +19,8 @@ const OF_OPENING: [f64; 6] = [1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7];
 const OF_STATE: [f64; 5] = [1e-2, 1e-3, 1e-4, 1e-5, 1e-6];
 /// Largest change of the scaled residual by a valve that opens fully, that counts as rounding error.
 const ROUNDING: f64 = 1e-10;
+/// Irrational number whose multiples give different steps in a range of unknowns.
+const GOLDEN: f64 = 0.618_033_988_749_895;
 /// Ratio of successive steps.
 const SHORTER: f64 = 10.0;
 
@@ -188,31 +192,44 @@ impl<'a> Instant<'a> {
     pub fn rows(&mut self, chosen: &[usize]) -> Vec<[Vec<f64>; 2]> {
         let n = self.y.len();
         let mut rows = vec![[vec![0.0; n], vec![0.0; n]]; chosen.len()];
-        // the first solution reports an interrupted response
-        for column in (0..n).take_while(|_| !halt::asked()) {
-            for rate in [false, true] {
-                let mut over = |step: f64| {
-                    let [before, after] = [-step, step].map(|x| {
-                        let state = if rate { &mut self.yp } else { &mut self.y };
-                        let own = state[column];
-                        state[column] += x;
-                        let values = self.outputs();
-                        let state = if rate { &mut self.yp } else { &mut self.y };
-                        state[column] = own;
-                        chosen.iter().map(|&place| values[place]).collect::<Vec<_>>()
-                    });
-                    quotient(&before, &after, step)
-                };
-                // most outputs depend on few unknowns
-                if over(OF_STATE[0]).iter().all(|x| *x == 0.0) {
+        for rate in [false, true] {
+            // most outputs depend on few unknowns: ranges without influence are omitted, others halved
+            let mut ranges: Vec<Range<usize>> = std::iter::once(0..n).collect();
+            // the first solution reports an interrupted response
+            while let Some(range) = ranges.pop().filter(|_| !halt::asked()) {
+                let first = self.over(&range, rate, OF_STATE[0], chosen);
+                if first.iter().all(|x| *x == 0.0) {
                     continue;
                 }
-                for (row, limit) in rows.iter_mut().zip(limits(&OF_STATE.map(over))) {
-                    row[usize::from(rate)][column] = limit;
+                if range.len() > 1 {
+                    let middle = range.start + range.len() / 2;
+                    ranges.extend([range.start..middle, middle..range.end]);
+                    continue;
+                }
+                let quotients = OF_STATE.map(|step| self.over(&range, rate, step, chosen));
+                for (row, limit) in rows.iter_mut().zip(limits(&quotients)) {
+                    row[usize::from(rate)][range.start] = limit;
                 }
             }
         }
         rows
+    }
+
+    /// Difference quotients of the chosen outputs over a range of unknowns, or of their rates. In a longer range the steps differ, so
+    /// that no influences cancel.
+    fn over(&mut self, range: &Range<usize>, rate: bool, step: f64, chosen: &[usize]) -> Vec<f64> {
+        let [before, after] = [-step, step].map(|x| {
+            let state = if rate { &mut self.yp } else { &mut self.y };
+            let own = state[range.clone()].to_vec();
+            for (k, value) in state[range.clone()].iter_mut().enumerate() {
+                *value += x / (1.0 + (GOLDEN * k as f64).fract());
+            }
+            let values = self.outputs();
+            let state = if rate { &mut self.yp } else { &mut self.y };
+            state[range.clone()].copy_from_slice(&own);
+            chosen.iter().map(|&place| values[place]).collect::<Vec<_>>()
+        });
+        quotient(&before, &after, step)
     }
 }
 

@@ -103,6 +103,17 @@ impl LinearResponse {
         })
     }
 
+    /// Highest derivative of the input in the equations and outputs, the input of a state-space model: 0, 1 or 2.
+    pub fn input_rate(&self) -> usize {
+        let acts = |k: &usize| self.forcing[*k].iter().any(|f| *f != 0.0) || self.direct.iter().any(|d| d[*k] != 0.0);
+        [2, 1].into_iter().find(acts).unwrap_or(0)
+    }
+
+    /// Error without a state-space model.
+    pub fn no_model(&self, why: &str) -> Error {
+        self.failure(format!("no state-space model: {why}"))
+    }
+
     /// Creates the solver for successive frequencies.
     ///
     /// # Errors
@@ -117,10 +128,14 @@ impl LinearResponse {
         if *failure == SpectralError::Interrupted {
             return Error::Interrupted("interrupted before the response was computed; nothing is written".into());
         }
+        self.failure(format!("no response: {failure}"))
+    }
+
+    fn failure(&self, what: String) -> Error {
         Error::Solver(Box::new(SolverError {
             code: Code::NoModes,
             at: StopPoint::Time(self.about.at),
-            what: format!("no response: {failure}"),
+            what,
             unknown: None,
             cause: None,
             hint: None,

@@ -11,7 +11,7 @@
 //! further states.
 
 use super::LinearResponse;
-use crate::error::{Code, Error, Result, SolverError, StopPoint};
+use crate::error::Result;
 use crate::sparse::Lu;
 
 /// Fraction of the largest entry of an output's row below which an entry is rounding error.
@@ -38,6 +38,23 @@ pub struct StateSpace {
     pub u0: f64,
     /// Outputs at the operating point.
     pub z0: Vec<f64>,
+    /// Accuracy of a reduced model; none if the model has all states.
+    pub reduction: Option<ModelReduction>,
+}
+
+/// Accuracy of a model with fewer states than the equations.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ModelReduction {
+    /// First and last frequency [Hz].
+    pub band: [f64; 2],
+    /// Largest error over the band, relative to the amplitude or, if it is larger, to the median amplitude over the band.
+    pub error: f64,
+    /// True if the gain at s = 0 is that of the response; false if the response has none.
+    pub static_gain: bool,
+    /// Modes in the band, and those of them that are poles of the model.
+    pub modes: [usize; 2],
+    /// Number of frequencies at which the equations were solved.
+    pub solved: usize,
 }
 
 impl StateSpace {
@@ -59,16 +76,7 @@ impl StateSpace {
                 values[entry] = from[entry];
             }
         }
-        let fault = |what: &str| {
-            Error::Solver(Box::new(SolverError {
-                code: Code::NoModes,
-                at: StopPoint::Time(about.at),
-                what: format!("no state-space model: {what}"),
-                unknown: None,
-                cause: None,
-                hint: None,
-            }))
-        };
+        let fault = |what: &str| response.no_model(what);
         let mut lu = Lu::sparse(pencil.pattern).map_err(|_| fault("the equations cannot be analysed"))?;
         lu.factor(&values)
             .map_err(|_| fault("the equations cannot be solved for rates"))?;
@@ -116,43 +124,48 @@ impl StateSpace {
             c.push((0..places.len()).map(row).collect::<Vec<f64>>());
             direct.push([0, 1, 2].map(|k: usize| direct_[k] + part(&by_input[k])));
         }
-        let mut states: Vec<String> = places.iter().map(|&k| about.system().layout.name(k)).collect();
-        let mut x0: Vec<f64> = places.iter().map(|&k| about.y[k] * scales[k]).collect();
-        let used = |k: &usize| direct.iter().any(|d| d[*k] != 0.0) || rates[*k].iter().any(|x| *x != 0.0);
-        let input_rate = [2, 1].into_iter().find(used).unwrap_or(0);
+        let states: Vec<String> = places.iter().map(|&k| about.system().layout.name(k)).collect();
+        let x0: Vec<f64> = places.iter().map(|&k| about.y[k] * scales[k]).collect();
+        let input_rate = response.input_rate();
         // lower rates of the input are appended to the states
-        let mut b = std::mem::take(&mut rates[input_rate]);
+        let b = std::mem::take(&mut rates[input_rate]);
         for (k, row) in a.iter_mut().enumerate() {
             row.extend(rates[..input_rate].iter().map(|rate| rate[k]));
         }
         c.iter_mut()
             .zip(&direct)
             .for_each(|(row, d)| row.extend(&d[..input_rate]));
-        let len = places.len() + input_rate;
-        for rate in 0..input_rate {
-            let mut row = vec![0.0; len];
-            if rate + 1 < input_rate {
-                row[places.len() + rate + 1] = 1.0;
-            }
-            a.push(row);
-            b.push(if rate + 1 == input_rate { 1.0 } else { 0.0 });
-            states.push(match rate {
-                0 => response.input.clone(),
-                _ => format!("rate of {}", response.input),
-            });
-            x0.push(if rate == 0 { response.u0 } else { 0.0 });
-        }
-        let d = direct.iter().map(|d| d[input_rate]).collect();
-        Ok(Self {
+        let mut model = Self {
             a,
             b,
             c,
-            d,
+            d: direct.iter().map(|d| d[input_rate]).collect(),
             states,
             input_rate,
             x0,
             u0: response.u0,
             z0: response.z0.clone(),
-        })
+            reduction: None,
+        };
+        model.append_input(&response.input);
+        Ok(model)
+    }
+
+    /// Completes a model whose rows of A have a column for each lower rate of the input: appends these rates to the states.
+    pub fn append_input(&mut self, input: &str) {
+        let (rates, own) = (self.input_rate, self.a.len());
+        for rate in 0..rates {
+            let mut row = vec![0.0; own + rates];
+            if rate + 1 < rates {
+                row[own + rate + 1] = 1.0;
+            }
+            self.a.push(row);
+            self.b.push(if rate + 1 == rates { 1.0 } else { 0.0 });
+            self.states.push(match rate {
+                0 => input.to_owned(),
+                _ => format!("rate of {input}"),
+            });
+            self.x0.push(if rate == 0 { self.u0 } else { 0.0 });
+        }
     }
 }

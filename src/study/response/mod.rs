@@ -1,15 +1,20 @@
-//! Frequency responses over a band: sampling, peaks, poles, and errors by the meshes.
+//! Frequency responses over a band: peaks, poles, and errors by the meshes.
+
+pub mod approximation;
+pub mod reduced;
+
+use std::convert::Infallible;
 
 use nalgebra::Complex;
 
-use super::in_halves;
+use self::approximation::ApproximatedResponse;
 use super::refine::finer_along_bladders;
 use crate::case::Case;
 use crate::error::{Error, Result};
 use crate::numerics::golden_section;
 use crate::run::modes;
 use crate::run::record::HistoryColumn;
-use crate::run::response::{Frequencies, LinearResponse};
+use crate::run::response::LinearResponse;
 use crate::spectral::{self, EigenvalueOptions};
 
 /// Largest number of pole pairs to compute in the band.
@@ -18,8 +23,8 @@ const POLES: usize = 48;
 const BESIDE: [f64; 7] = [-4.0, -1.5, -0.5, 0.0, 0.5, 1.5, 4.0];
 /// Change of a response between two samples, relative to the larger one, above which a sample is added between them.
 const CHANGE: f64 = 0.1;
-/// Largest number of refinement passes, and of samples.
-const PASSES: usize = 5;
+/// Part of the distance of the samples of the grid in which at most one is added, and largest number of samples with added ones.
+const NARROW: f64 = 1.0 / 32.0;
 const MOST: usize = 4000;
 /// Part of the largest amplitude below which a local maximum is a rounding error.
 const NOISE: f64 = 1e-6;
@@ -27,6 +32,9 @@ const NOISE: f64 = 1e-6;
 const FLAT: f64 = 1e-9;
 /// Golden-section steps of the search for a peak; each leaves 0.62 of the interval.
 const STEPS: usize = 48;
+/// Errors of the approximation, and of those on other meshes.
+const OWN: f64 = 1e-5;
+const OTHER: f64 = 1e-4;
 /// Error of the run's mesh over its difference to half and to twice the beam cells, and to twice the fluid cells.
 const OF_HALF: f64 = 1.25 / 3.0;
 const OF_TWICE: f64 = 1.25 * 4.0 / 3.0;
@@ -84,7 +92,7 @@ pub struct OutputResponse {
     pub output: HistoryColumn,
     /// Its transfer function at each frequency.
     pub values: Vec<Complex<f64>>,
-    /// Estimated absolute error by the meshes of beam and fluid; empty if unknown.
+    /// Estimated absolute error by the meshes of beam and fluid, and by the approximation; empty if unknown.
     pub errors: Vec<f64>,
     /// Its peaks.
     pub peaks: Vec<BandPeak>,
@@ -102,6 +110,8 @@ pub struct BandResponse {
     pub poles: Vec<BandPole>,
     /// Number of poles with positive real part.
     pub growing: usize,
+    /// Number of frequencies at which the equations were solved.
+    pub solved: usize,
     /// Reasons why poles or errors are unknown.
     pub unknown: Vec<String>,
 }
@@ -125,29 +135,30 @@ pub fn respond(case: &Case, request: &Request, response: LinearResponse) -> Resu
             "poles beyond the {POLES} lowest pairs in the band. Peaks near them may be missing"
         ));
     }
-    let (frequencies, values) = sample(&response, request, &poles)?;
-    let mut solver = response.solver()?;
+    let known: Vec<_> = poles.iter().map(|pole| pole.s).collect();
+    let approximated = ApproximatedResponse::new(&response, request.band, &known, OWN)?;
+    let (frequencies, values) = sample(&approximated, request, &poles);
     let mut curves = vec![];
     for (place, output) in response.outputs.iter().enumerate() {
         let values: Vec<_> = values.iter().map(|all| all[place]).collect();
+        let median = approximated.medians[place];
+        let error = |(hz, value): (&f64, &Complex<f64>)| approximated.error_at(*hz) * value.norm().max(median);
         curves.push(OutputResponse {
             output: output.clone(),
-            peaks: peaks(&mut solver, place, &frequencies, &values, &poles)?,
+            peaks: peaks(&approximated, place, &frequencies, &values, &poles),
+            errors: frequencies.iter().zip(&values).map(error).collect(),
             values,
-            errors: vec![],
         });
     }
-    drop(solver);
     for (other, factor) in meshes(case)? {
         match request
             .compute(&other)
-            .and_then(|response| all_at(&response, &frequencies))
+            .and_then(|response| ApproximatedResponse::new(&response, request.band, &[], OTHER))
         {
-            Ok(others) => {
-                for (place, curve) in curves.iter_mut().enumerate() {
-                    curve.errors.resize(frequencies.len(), 0.0);
-                    for ((error, own), other) in curve.errors.iter_mut().zip(&curve.values).zip(&others) {
-                        *error += factor * (own - other[place]).norm();
+            Ok(other) => {
+                for (k, hz) in frequencies.iter().enumerate() {
+                    for (curve, other) in curves.iter_mut().zip(other.at(*hz)) {
+                        curve.errors[k] += factor * (curve.values[k] - other).norm();
                     }
                 }
             }
@@ -163,7 +174,8 @@ pub fn respond(case: &Case, request: &Request, response: LinearResponse) -> Resu
         frequencies,
         curves,
         poles,
-        growing,
+        growing: growing.len(),
+        solved: approximated.samples.omega.len(),
         unknown,
     })
 }
@@ -185,7 +197,10 @@ fn meshes(case: &Case) -> Result<Vec<(Case, f64)>> {
 
 /// Poles in a band, and the number of poles with positive real part. The search omits the memory of unsteady friction, whose many decay
 /// modes would crowd it; each pole is corrected afterwards.
-fn poles(
+///
+/// # Errors
+/// The poles cannot be computed.
+pub fn poles(
     case: &Case,
     at: Option<f64>,
     response: &LinearResponse,
@@ -203,7 +218,7 @@ fn poles(
         .pairs;
     let farthest = pairs.iter().map(|pair| (pair.s - middle).norm()).fold(0.0, f64::max);
     let whole = pairs.len() < 2 * POLES || farthest >= (to - middle.im).max(middle.im - from);
-    let growing = growing_among(&pairs);
+    let growing = growing_among(&pairs).map(|pair| pair.s).collect();
     let mut poles = vec![];
     for pair in pairs.iter().filter(|pair| pair.s.im > 0.0) {
         let (mut s, mut bound) = (pair.s, pair.error);
@@ -227,12 +242,14 @@ fn poles(
 }
 
 /// Poles in a band.
-#[derive(Default)]
-struct Poles {
-    poles: Vec<BandPole>,
-    growing: usize,
+#[derive(Clone, Debug, Default)]
+pub struct Poles {
+    /// Poles, in ascending order of frequency; of a conjugate pair the one with positive imaginary part.
+    pub poles: Vec<BandPole>,
+    /// Poles with positive real part, in the band or not.
+    pub growing: Vec<Complex<f64>>,
     /// False if the band may contain further poles.
-    whole: bool,
+    pub whole: bool,
 }
 
 /// Linearization without the memory of unsteady friction.
@@ -244,10 +261,9 @@ fn plain(case: &Case, at: Option<f64>) -> std::result::Result<modes::Linearised,
     plain.map_err(|fault| fault.to_string())
 }
 
-/// Number of poles, or conjugate pairs, with positive real part.
-fn growing_among(pairs: &[spectral::EigenPair]) -> usize {
-    let growing = pairs.iter().filter(|pair| pair.s.im >= 0.0 && pair.s.re > pair.error);
-    growing.count()
+/// Eigenvalues with positive real part, one of each conjugate pair.
+fn growing_among(pairs: &[spectral::EigenPair]) -> impl Iterator<Item = &spectral::EigenPair> {
+    pairs.iter().filter(|pair| pair.s.im >= 0.0 && pair.s.re > pair.error)
 }
 
 /// Number of growing poles, or conjugate pairs, near the characteristic frequency of the state.
@@ -259,21 +275,14 @@ pub fn growing(case: &Case, at: Option<f64>, response: &LinearResponse) -> std::
     let plain = apart.as_ref().unwrap_or(&response.about);
     let middle = Complex::new(0.0, plain.frequency());
     let found = spectral::nearest(&plain.pencil(), middle, 2 * POLES, &EigenvalueOptions::default());
-    Ok(growing_among(&found.map_err(|failure| failure.to_string())?.pairs))
-}
-
-fn all_at(response: &LinearResponse, frequencies: &[f64]) -> Result<Vec<Vec<Complex<f64>>>> {
-    in_halves(frequencies, |part| {
-        let mut solver = response.solver()?;
-        part.iter().map(|f| solver.at(*f)).collect()
-    })
+    Ok(growing_among(&found.map_err(|failure| failure.to_string())?.pairs).count())
 }
 
 /// Frequencies [Hz], and values of all outputs at each.
 type Samples = (Vec<f64>, Vec<Vec<Complex<f64>>>);
 
-/// Samples a response on a grid, near poles, and between samples where it changes.
-fn sample(response: &LinearResponse, request: &Request, poles: &[BandPole]) -> Result<Samples> {
+/// Evaluates a response on a grid, near poles, and between these frequencies where it changes.
+fn sample(response: &ApproximatedResponse, request: &Request, poles: &[BandPole]) -> Samples {
     let [from, to] = request.band;
     let points = if from < to { request.points } else { 1 };
     let steps = (points.max(2) - 1) as f64;
@@ -285,41 +294,35 @@ fn sample(response: &LinearResponse, request: &Request, poles: &[BandPole]) -> R
     }
     frequencies.sort_by(f64::total_cmp);
     frequencies.dedup_by(|a, b| *a <= *b * (1.0 + 1e-12));
-    let mut values = all_at(response, &frequencies)?;
-    for _ in 0..PASSES {
-        let between = |k: &usize| {
-            let [a, b] = [&values[*k], &values[k + 1]];
+    // samples still to be added, the next one last
+    let mut ahead: Vec<(f64, Vec<Complex<f64>>)> = frequencies.iter().rev().map(|f| (*f, response.at(*f))).collect();
+    let (mut frequencies, mut values) = (vec![], vec![]);
+    while let Some((f, value)) = ahead.pop() {
+        let before = frequencies.last().zip(values.last());
+        let middle = before.and_then(|(before, old): (&f64, &Vec<Complex<f64>>)| {
             let changes = |(a, b): (&Complex<f64>, &Complex<f64>)| (a - b).norm() > CHANGE * a.norm().max(b.norm());
-            a.iter().zip(b).any(changes) && frequencies[k + 1] > frequencies[*k] * (1.0 + 1e-9)
-        };
-        let places: Vec<usize> = (0..frequencies.len() - 1).filter(between).collect();
-        if places.is_empty() || frequencies.len() + places.len() > MOST {
-            break;
+            let wide = (f / before).ln() > NARROW * (to / from).ln() / steps
+                && frequencies.len() + ahead.len() < points.max(MOST);
+            (wide && old.iter().zip(&value).any(changes)).then(|| (before * f).sqrt())
+        });
+        if let Some(middle) = middle {
+            ahead.extend([(f, value), (middle, response.at(middle))]);
+        } else {
+            frequencies.push(f);
+            values.push(value);
         }
-        let added: Vec<f64> = places
-            .iter()
-            .map(|k| (frequencies[*k] * frequencies[k + 1]).sqrt())
-            .collect();
-        let found = all_at(response, &added)?;
-        let mut all: Vec<_> = frequencies
-            .into_iter()
-            .zip(values)
-            .chain(added.into_iter().zip(found))
-            .collect();
-        all.sort_by(|a, b| a.0.total_cmp(&b.0));
-        (frequencies, values) = all.into_iter().unzip();
     }
-    Ok((frequencies, values))
+    (frequencies, values)
 }
 
 /// Local maxima of an amplitude, each refined by golden-section search.
 fn peaks(
-    solver: &mut Frequencies,
+    response: &ApproximatedResponse,
     place: usize,
     frequencies: &[f64],
     values: &[Complex<f64>],
     poles: &[BandPole],
-) -> Result<Vec<BandPeak>> {
+) -> Vec<BandPeak> {
     let largest = values.iter().map(|value| value.norm()).fold(0.0, f64::max);
     let mut all = vec![];
     for k in 1..frequencies.len().saturating_sub(1) {
@@ -328,9 +331,9 @@ fn peaks(
         if !(own > before && own >= after) || own < NOISE * largest || rises < FLAT * own {
             continue;
         }
-        let mut at = |f: f64| -> Result<Complex<f64>> { Ok(solver.at(f)?[place]) };
+        let at = |f: f64| response.at(f)[place];
         let around = [frequencies[k - 1], frequencies[k + 1]];
-        let frequency_hz = golden_section::maximum(around, STEPS, |f| Ok::<_, Error>(at(f)?.norm()))?;
+        let Ok(frequency_hz) = golden_section::maximum(around, STEPS, |f| Ok::<_, Infallible>(at(f).norm()));
         let s = std::f64::consts::TAU * frequency_hz;
         let nearest = poles
             .iter()
@@ -338,9 +341,9 @@ fn peaks(
         let damping = |pole: &BandPole| 0.0 - pole.s.re / pole.s.norm();
         all.push(BandPeak {
             frequency_hz,
-            value: at(frequency_hz)?,
+            value: at(frequency_hz),
             damping_ratio: nearest.filter(|pole| (pole.s.im - s).abs() < 0.1 * s).map(damping),
         });
     }
-    Ok(all)
+    all
 }
