@@ -3,6 +3,7 @@
 mod bands;
 mod cli;
 mod common;
+mod exact_responses;
 mod fourth;
 mod gaps;
 mod left_out;
