@@ -174,8 +174,10 @@ fn picture(found: &CyclePath) -> Option<String> {
         let y = PictureAxis::new(name, unit, 5).with(&[0.0]);
         Some(Panel::new((560.0, 170.0), x.clone(), y, series))
     };
-    let quantities =
-        shown(found).map(|one| panel(&format!("largest {}", short(one)), one.unit(), &|m| largest(m, one)));
+    // an end that is held does not move
+    let moves = |one: &Interest| found.members.iter().any(|m| largest(m, *one) != Some(0.0));
+    let quantities = shown(found).into_iter().filter(moves);
+    let quantities = quantities.map(|one| panel(&format!("largest {}", short(one)), one.unit(), &|m| largest(m, one)));
     // mean power and efficiency
     let harvested = energies::harvested(found)
         .into_iter()
@@ -183,7 +185,7 @@ fn picture(found: &CyclePath) -> Option<String> {
     let harvested = harvested.map(|f| panel(f.words, f.unit, &|m| energies::column(&energies(m), &f.name)));
     let growth = panel("growth", "1/s", &|m| Some(m.floquet.verdict.growth_per_s));
     let about = "rings: requested values; dashed and orange: cycles that are not stable";
-    let panels = quantities.into_iter().chain(harvested).chain([growth]).flatten();
+    let panels = quantities.chain(harvested).chain([growth]).flatten();
     Picture::stacked(format!("{} · steady cycles", found.case), about, panels).svg()
 }
 
