@@ -38,9 +38,8 @@ const PREFERRED: f64 = 0.8;
 const PATIENCE: f64 = 4.0;
 /// Ratio of an error to the smallest before above which that smallest one is discarded.
 const SHOWN: f64 = 2.0;
-/// Error above which a quantity is unknown, and the number of refinements that make it larger after which there is no reason for another.
+/// Error above which a quantity is unknown: if a refinement makes it larger, there is no reason for another.
 const UNKNOWN: f64 = 1.0;
-const GROWTHS: usize = 2;
 /// Error above which its size is unreliable; larger errors count as this one in sums.
 const SATURATED: f64 = 0.3;
 /// Largest work (steps times unknowns) that a refinement is expected to do: so many times that of the first run, and so much.
@@ -55,8 +54,6 @@ pub struct Levers {
     best: BTreeMap<String, (f64, f64)>,
     /// Quantities whose errors coarse runs do not show.
     shown: BTreeSet<String>,
-    /// Refinements that made the errors of unknown quantities larger.
-    grown: BTreeMap<String, usize>,
     /// Steps and decades of the tolerance before the last refinement.
     before: Option<(f64, f64)>,
 }
@@ -77,7 +74,6 @@ impl Levers {
             first: None,
             best: BTreeMap::new(),
             shown: BTreeSet::new(),
-            grown: BTreeMap::new(),
             before: None,
         }
     }
@@ -121,12 +117,10 @@ impl Levers {
     }
 
     /// True if the error of a quantity is no longer worth the work; stores its best error. If a finer run shows a much larger error, that error
-    /// replaces the best one, once per quantity. A quantity whose error exceeds it and has grown twice has no limit.
+    /// replaces the best one, once per quantity; unless it exceeds the quantity, as of flows that no mesh resolves.
     fn is_stuck(&mut self, name: &str, work: f64, error: f64) -> bool {
         let best = self.best.entry(name.into()).or_insert((work, error));
-        let grown = self.grown.entry(name.into()).or_insert(0);
-        *grown += usize::from(error > UNKNOWN && error > best.1);
-        if *grown >= GROWTHS {
+        if error > UNKNOWN && error > best.1 {
             return true;
         }
         let falls = error <= best.1 * (work / best.0).powf(PAYS).min(1.0);
