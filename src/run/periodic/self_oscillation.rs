@@ -52,7 +52,7 @@ struct Motion {
 /// last oscillation gives state and period for Newton's iteration.
 ///
 /// # Errors
-/// [`Error::Solver`] if the motion decays to rest or no cycle was found; those of [`PeriodicScene::new`] and of a run.
+/// [`Error::Solver`] if the motion decays to rest or no cycle was found; [`Error::Usage`] if nothing dissipates energy; those of [`PeriodicScene::new`] and of a run.
 pub fn find(case: &Case, stop: &StopFlag) -> Result<(PeriodicScene, Cycle)> {
     let mut scene = PeriodicScene::new(case, Some(case.time.end_s))?.heeding(stop);
     scene.held(&case.name)?;
@@ -175,6 +175,16 @@ fn transient(case: &Case, scene: &PeriodicScene) -> Result<Vec<f64>> {
         y: None,
     };
     let outcome = dynamics::figures(&run, system.clone(), &mut recorder)?;
+    let energies = &outcome.summary.balances.energy_j;
+    let lost = |name: &str| name.starts_with("dissipated") || name == "harvested";
+    let lost = energies.iter().filter(|(name, _)| lost(name)).map(|(_, x)| x.abs());
+    if recorder.y.is_some() && lost.fold(0.0, f64::max) == 0.0 {
+        return Err(Error::Usage(format!(
+            "{} has no period: nothing drives it periodically, and nothing dissipates energy, so a free motion of any amplitude \
+             goes on. Use a periodic signal, add damping, or compute the frequencies by `slcbeam modes`",
+            case.name
+        )));
+    }
     let reached = recorder.y.and_then(|y| scene.convert(&system, &y));
     reached.ok_or_else(|| match outcome.fault {
         Some(fault) => Error::Solver(Box::new(fault)),
@@ -278,7 +288,7 @@ fn section(scene: &PeriodicScene, change: &[f64]) -> Vec<f64> {
 
 /// Error of a motion that decays.
 fn rest(case: &Case, amplitude: f64) -> Error {
-    none(case, amplitude, "the motion decays to rest")
+    none(case, amplitude, "the motion comes to rest")
 }
 
 /// Error of a case without self-oscillation, with the modes about its equilibrium.
@@ -290,18 +300,25 @@ fn none(case: &Case, amplitude: f64, reason: &str) -> Error {
     };
     let at = case.time.end_s;
     let found = modes::at_equilibrium(case, at).and_then(|about| modes::compute(about, &plan));
-    let cause = found.ok().and_then(|found| {
-        let slowest = found.modes.iter().filter(|mode| !mode.kind.stays());
-        let slowest = slowest.max_by(|a, b| a.s.re.total_cmp(&b.s.re))?;
-        let frequency = slowest.s.im.abs() / TAU;
-        let rate = slowest.s.re;
-        let verb = if rate > 0.0 { "grows" } else { "decays" };
-        Some(format!(
-            "of the {} slowest modes about the equilibrium, the least damped, at {frequency:.4} Hz, {verb} at {:.4} /s",
-            found.modes.len(),
-            rate.abs()
-        ))
+    let slowest = found.ok().and_then(|found| {
+        let modes = found.modes.iter().filter(|mode| !mode.kind.stays());
+        let slowest = modes.max_by(|a, b| a.s.re.total_cmp(&b.s.re))?;
+        Some((found.modes.len(), slowest.s))
     });
+    let cause = slowest.map(|(count, s)| {
+        let verb = if s.re > 0.0 { "grows" } else { "decays" };
+        format!(
+            "of the {count} slowest modes about the equilibrium, the least damped, at {:.4} Hz, {verb} at {:.4} /s",
+            s.im.abs() / TAU,
+            s.re.abs()
+        )
+    });
+    let hint = match slowest {
+        Some((_, s)) if s.re > 0.0 => "a larger displacement in /start, or a tighter /solver/rtol".into(),
+        _ => format!(
+            "a longer /time/end_s or a larger /start may reach a self-oscillation; `slcbeam modes --at {at}` lists the modes"
+        ),
+    };
     Error::Solver(Box::new(SolverError {
         code: Code::NoCycle,
         at: StopPoint::Time(0.0),
@@ -312,8 +329,6 @@ fn none(case: &Case, amplitude: f64, reason: &str) -> Error {
         ),
         unknown: None,
         cause,
-        hint: Some(format!(
-            "a longer /time/end_s or a larger /start may reach a self-oscillation; `slcbeam modes --at {at}` lists the modes"
-        )),
+        hint: Some(hint),
     }))
 }
