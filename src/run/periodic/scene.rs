@@ -22,6 +22,9 @@ const MOST_STEPS: usize = 5000;
 /// Method of the steps.
 pub const METHOD: TableauMethod = TableauMethod::Esdirk46;
 
+/// Receives time [s], unknowns and rates [1/s] at the end of a step. Returns false to end the motion.
+pub(super) type MotionWatcher<'a> = &'a mut dyn FnMut(f64, &[f64], &[f64]) -> bool;
+
 /// A case in the long run: the full case, signals without their starts, and a period.
 #[derive(Clone, Debug)]
 pub struct PeriodicScene {
@@ -178,14 +181,8 @@ impl PeriodicScene {
         OneStep::new(dae, 0.0, &y, &yp, &self.options()).map_err(error)
     }
 
-    /// Follows the motion from a state for at most a time [s]. `look` receives time, unknowns and rates after each step; the motion ends
-    /// if it returns false. Returns the last state.
-    pub(super) fn follow(
-        &self,
-        y: &[f64],
-        end: f64,
-        look: &mut dyn FnMut(f64, &[f64], &[f64]) -> bool,
-    ) -> std::result::Result<Vec<f64>, StepError> {
+    /// Follows the motion from a state for at most a time [s]. Returns the last state.
+    pub(super) fn follow(&self, y: &[f64], end: f64, look: MotionWatcher) -> std::result::Result<Vec<f64>, StepError> {
         let mut solver = self.begin(self.dae(), y)?;
         while solver.time() < end {
             solver.step(end).map_err(error)?;
