@@ -65,7 +65,7 @@ fn a_limit_cycle_is_the_end_of_a_long_run() {
 }
 
 /// Source: normal form of a supercritical Hopf bifurcation, `r' = σ r - c r³`: the cycle has the multiplier of the growth rate -2 σ, and
-/// its frequency tends to that of the growing mode in proportion to σ (Seydel 2010, section 2.7).
+/// its frequency tends to that of the growing mode in proportion to σ (Seydel 2010).
 /// Goal: just beyond the flutter load the cycles have them. Tolerance: terms of relative order a² of the amplitude a, 0.028 at the larger
 /// load.
 #[test]
