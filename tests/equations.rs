@@ -305,7 +305,7 @@ const INDEX: &[(&str, &str, &str)] = &[
         "a_hardening_beam_folds_where_its_backbone_says",
     ),
     (
-        "[E95]",
+        "[E97]",
         "tests/periodic/self_oscillation.rs",
         "a_limit_cycle_is_the_end_of_a_long_run",
     ),

@@ -96,7 +96,7 @@ pub(super) fn refine(scene: &mut PeriodicScene, known: &Cycle) -> std::result::R
     attempt(scene, &known.y, &flow, &mut ShootingRecord::default())
 }
 
-/// `[E95]` Newton's iteration for state and period, with a phase condition (Seydel):
+/// `[E97]` Newton's iteration for state and period, with a phase condition (Seydel):
 ///
 /// ```text
 /// P(y, T) = y     (1 - M) δ - T f(P) τ = P(y, T) - y     f₀ · δ = 0     τ = δT/T
