@@ -310,6 +310,11 @@ const INDEX: &[(&str, &str, &str)] = &[
         "a_model_of_the_actuator_has_few_states",
     ),
     ("[E96]", "tests/modes/reduced.rs", "a_response_has_the_stated_error"),
+    (
+        "[E97]",
+        "tests/periodic/self_oscillation.rs",
+        "a_limit_cycle_is_the_end_of_a_long_run",
+    ),
 ];
 
 #[test]

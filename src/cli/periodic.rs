@@ -1,4 +1,4 @@
-//! `slcbeam periodic`: the steady cycle of a driven case, or cycles along a parameter.
+//! `slcbeam periodic`: the steady cycle of a driven case, a self-oscillation, or cycles along a parameter.
 
 use std::process::ExitCode;
 

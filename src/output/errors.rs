@@ -45,8 +45,8 @@ fn violation(places: &mut LineColumns, violation: &Violation) -> Value {
 pub fn diagnosis(fault: &SolverError) -> String {
     // modes and equilibria have no time of a run
     let failed = match (fault.code, fault.at) {
-        (Code::NoModes | Code::NoEquilibrium | Code::Interrupted, _) => String::new(),
-        (Code::NoCycle, StopPoint::Time(t)) => format!("no cycle, t = {t:.6e} s of its period: "),
+        (Code::NoCycle, StopPoint::Time(t)) if t > 0.0 => format!("no cycle, t = {t:.6e} s of its period: "),
+        (Code::NoModes | Code::NoEquilibrium | Code::NoCycle | Code::Interrupted, _) => String::new(),
         (_, StopPoint::Time(t)) => format!("the run failed at t = {t:.6e} s: "),
         (_, StopPoint::LoadFactor(factor)) => format!("failed at {factor:.6} of the loads: "),
     };

@@ -63,8 +63,9 @@ pub fn drive(case: &Case, model: &Model, asked: Option<f64>) -> Result<PeriodicD
                 "--period {period}: must be a time > 0, in seconds"
             ))),
             None => Err(Error::Usage(format!(
-                "the case {name} has no periodic signal. Use a sine at an end, a load, a valve or a port, or analyze the \
-                 undriven case by `slcbeam floquet --period SECONDS`"
+                "the case {name} has no periodic signal. Use a sine at an end, a load, a valve or a port; analyze the undriven \
+                 case by `slcbeam floquet --period SECONDS`, or search for its self-oscillation by `slcbeam periodic` \
+                 without --sweep, --sensitivity and --uncertain"
             ))),
         };
     }

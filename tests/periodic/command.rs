@@ -276,7 +276,7 @@ fn what_makes_no_sense_is_a_usage_error() {
     let valves = "cases/valves-open.json";
     for (arguments, words) in [
         (vec!["floquet", "cases/bend-dry.json"], "period"),
-        (vec!["periodic", "cases/bend-dry.json"], "period"),
+        (vec!["periodic", "cases/bend-dry.json"], "nothing dissipates energy"),
         (vec!["floquet", valves, "--map", "amplitude"], "frequency,amplitude"),
         (
             vec!["floquet", valves, "--map", "frequency,amplitude", "--points", "0,3"],

@@ -3,5 +3,6 @@
 mod branch;
 mod command;
 mod floquet;
+mod self_oscillation;
 mod shooting;
 mod subharmonic;

@@ -147,6 +147,7 @@ fn balances_of_loaded_beams_close() {
         ("middle-third", 0.3),
         ("two-materials", 1.5),
         ("rotor-fin", 1.0),
+        ("flutter-cycle", 0.3),
     ] {
         closes(name, end);
     }

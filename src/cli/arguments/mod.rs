@@ -70,7 +70,7 @@ pub enum Command {
     Bands(BandsArguments),
     /// Find the steady cycle of a periodically driven case and its stability, or a stability map of shaking
     Floquet(FloquetArguments),
-    /// Find the steady cycle of a periodically driven case directly, without its transient; or along a parameter
+    /// Find the steady cycle of a periodically driven case directly, without its transient, or along a parameter; or a self-oscillation
     Periodic(PeriodicArguments),
     /// Compute many designs on all cores into one table: grids, ranges, samples, several cases; after an interruption the same command
     /// computes the missing designs

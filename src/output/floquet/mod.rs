@@ -39,6 +39,7 @@ pub fn describe(found: &CycleResult) -> String {
     let Floquet {
         multipliers,
         conserved,
+        trivial,
         verdict,
         period_s,
         ..
@@ -73,6 +74,14 @@ pub fn describe(found: &CycleResult) -> String {
         text += "\nleft out: the multiplier 1 of a conserved volume\n";
     } else if *conserved > 1 {
         let _ = writeln!(text, "\nleft out: the multiplier 1 of {conserved} conserved volumes");
+    }
+    if let Some(trivial) = trivial {
+        let _ = writeln!(
+            text,
+            "\nself-oscillation at {} Hz; left out: its trivial multiplier {:.6} (a shift in time; 1 without the error of the steps)",
+            significant(1.0 / period_s, 6),
+            trivial.re
+        );
     }
     let _ = writeln!(text, "\n{}", verdict.words);
     if let Some(refined) = &found.refined {

@@ -58,12 +58,21 @@ fn multipliers(found: &CycleResult) -> Value {
 /// Sentences about the stability of a cycle and the search for it.
 pub fn answer(found: &CycleResult) -> String {
     format!(
-        "{}. The cycle of {} s was found in {} over {}, with {} a period.",
+        "{}. The {} of {} s was found in {} over {}, with {} a period.{}",
         capital(&found.floquet.verdict.words),
+        match found.floquet.trivial {
+            Some(_) => "self-oscillation",
+            None => "cycle",
+        },
         significant(found.floquet.period_s, 4),
         counted(found.cycle.newton_steps, "Newton step"),
         counted(found.cycle.periods, "period"),
         counted(found.cycle.steps_per_period as u64, "step"),
+        found.floquet.trivial.as_ref().map_or(String::new(), |trivial| format!(
+            " Its frequency is {} Hz. Its trivial multiplier {:.6}, of a shift in time, is left out below.",
+            significant(1.0 / found.floquet.period_s, 4),
+            trivial.re
+        )),
     )
 }
 

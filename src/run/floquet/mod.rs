@@ -13,7 +13,7 @@ use std::f64::consts::TAU;
 use serde::{Deserialize, Serialize};
 
 use super::periodic::{Cycle, PeriodicScene};
-use crate::numerics::krylov;
+use crate::numerics::{kernels, krylov};
 use shape::{DryBendingModes, EnergyPart};
 
 pub use verdict::{CycleStability, CycleVerdict};
@@ -22,6 +22,8 @@ pub use verdict::{CycleStability, CycleVerdict};
 const RESIDUAL: f64 = 1e-8;
 /// Multipliers below this decay within a period: no frequency or rate can be read from them.
 const DEAD: f64 = 1e-9;
+/// Largest distance from 1 of the multiplier of a shift in time.
+const TRIVIAL: f64 = 0.01;
 /// Largest number of vectors of the Krylov space.
 const MOST_VECTORS: usize = 600;
 
@@ -59,6 +61,9 @@ pub struct Floquet {
     pub driven: bool,
     /// Number of multipliers that are exactly one because a volume is conserved; omitted below.
     pub conserved: usize,
+    /// Multiplier of a shift in time along a self-oscillation: one, except for the error of the steps; omitted below.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub trivial: Option<Multiplier>,
     /// Other multipliers, largest first.
     pub multipliers: Vec<Multiplier>,
     /// Stability and its cause.
@@ -84,12 +89,13 @@ pub fn multipliers(scene: &PeriodicScene, cycle: &mut Cycle, count: usize) -> Fl
             scene.admit(v);
         },
         &start,
-        count.min(most),
+        (count + usize::from(scene.free_period)).min(most),
         RESIDUAL,
         most,
     );
     let period = scene.drive.period;
-    let multipliers: Vec<Multiplier> = found
+    let shift = scene.free_period.then(|| along_flow(scene, cycle, &found)).flatten();
+    let mut multipliers: Vec<Multiplier> = found
         .into_iter()
         .filter(|eigen| eigen.value.norm() > DEAD)
         .map(|eigen| {
@@ -111,14 +117,29 @@ pub fn multipliers(scene: &PeriodicScene, cycle: &mut Cycle, count: usize) -> Fl
             }
         })
         .collect();
-    let verdict = verdict::judge(&multipliers, scene.drive.driven, scene.rtol, period);
+    let trivial = shift.map(|k| multipliers.remove(k));
+    multipliers.truncate(count);
+    let verdict = verdict::judge(&multipliers, scene);
     Floquet {
         period_s: period,
         driven: scene.drive.driven,
         conserved: scene.conserved.len(),
+        trivial,
         multipliers,
         verdict,
     }
+}
+
+/// Index of the multiplier of a shift in time: the one near 1 whose vector is most parallel to the flow `y'` at the start.
+fn along_flow(scene: &PeriodicScene, cycle: &Cycle, found: &[krylov::Eigen]) -> Option<usize> {
+    let mut flow = cycle.yp.clone();
+    scene.admit(&mut flow);
+    let near = |eigen: &krylov::Eigen| (eigen.value - 1.0).norm() < TRIVIAL;
+    let parallel =
+        |eigen: &krylov::Eigen| kernels::dot(&flow, &eigen.vector[0]).hypot(kernels::dot(&flow, &eigen.vector[1]));
+    let candidates = found.iter().enumerate().filter(|(_, eigen)| near(eigen));
+    let best = candidates.max_by(|a, b| parallel(a.1).total_cmp(&parallel(b.1)));
+    best.map(|(k, _)| k)
 }
 
 /// Largest angle [rad] by which a part may turn in a step, at its dry frequency, for its turns to be counted.

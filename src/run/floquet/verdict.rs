@@ -5,6 +5,7 @@ use serde::{Deserialize, Serialize};
 use super::Multiplier;
 use super::shape::EnergyPart;
 use crate::run::json_null;
+use crate::run::periodic::PeriodicScene;
 
 /// Growth over a period below which a disturbance counts as neutral: the effect of the steps' own error on a multiplier of one.
 const NEUTRAL: f64 = 1e-5;
@@ -36,7 +37,7 @@ pub struct CycleVerdict {
 }
 
 /// Derives the verdict from the largest multiplier.
-pub fn judge(multipliers: &[Multiplier], driven: bool, rtol: f64, period: f64) -> CycleVerdict {
+pub fn judge(multipliers: &[Multiplier], scene: &PeriodicScene) -> CycleVerdict {
     let Some(first) = multipliers.first() else {
         return CycleVerdict {
             stability: CycleStability::Stable,
@@ -45,9 +46,9 @@ pub fn judge(multipliers: &[Multiplier], driven: bool, rtol: f64, period: f64) -
         };
     };
     let growth = first.growth_per_s;
-    let threshold = NEUTRAL.max(rtol) / period;
+    let threshold = NEUTRAL.max(scene.rtol) / scene.drive.period;
     let (stability, words) = if growth > threshold {
-        (CycleStability::Unstable, unstable(first, driven))
+        (CycleStability::Unstable, unstable(first, scene))
     } else if growth > -threshold {
         let words = format!(
             "neutral: {} neither grows nor decays (modulus of the multiplier 1 within {:.0e})",
@@ -78,7 +79,7 @@ fn at(m: &Multiplier) -> String {
     }
 }
 
-fn unstable(m: &Multiplier, driven: bool) -> String {
+fn unstable(m: &Multiplier, scene: &PeriodicScene) -> String {
     let rate = format!("with growth {:.4} /s", m.growth_per_s);
     let angle = m.im.atan2(m.re);
     let (kind, value) = if angle < REAL {
@@ -93,7 +94,8 @@ fn unstable(m: &Multiplier, driven: bool) -> String {
         )
     };
     let kind = format!("{kind}, multiplier {value}");
-    match (m.part, driven) {
+    match (m.part, scene.drive.driven) {
+        _ if scene.free_period => format!("instability of {} ({kind}) {rate}", m.part),
         (EnergyPart::Bending(_), true) => format!("parametric resonance of {} ({kind}) {rate}", m.part),
         (_, true) => format!("instability of {} ({kind}) {rate}", m.part),
         (_, false) if angle < REAL => format!("divergence of {} {rate}", m.part),

@@ -5,9 +5,9 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::record;
 use super::scene::PeriodicScene;
 use super::shooting::{Cycle, ShootingRecord, attempt, shoot};
+use super::{record, self_oscillation};
 use crate::case::schema::Case;
 use crate::error::Result;
 use crate::run::energies::{open_over_window, too_open};
@@ -87,6 +87,7 @@ pub fn settle(case: &Case, scene: PeriodicScene, cycle: Cycle) -> Result<Settled
         scene.rtol = rtol;
         // a cycle of several periods is only searched from here: elsewhere one of a single period may be found
         let found = match scene.periods {
+            _ if scene.free_period => self_oscillation::refine(&mut scene, &now.cycle),
             1 => shoot(&scene, Some(&now.cycle.y)),
             _ => attempt(&scene, now.cycle.y.clone(), &mut ShootingRecord::default()),
         };

@@ -262,8 +262,8 @@ impl CycleFamily<'_> {
         march.replace(beside.dae(), factor);
         let there = pass(&beside, march, &moved);
         march.replace(scene.dae(), 1.0 / factor);
-        let (open, size) = pass(scene, march, y)?;
-        let (there, _) = there?;
+        let PeriodPass { open, size, .. } = pass(scene, march, y)?;
+        let there = there?.open;
         let by_coordinate = there.iter().zip(&open).map(|(there, here)| (there - here) / DIFFERENCE);
         Ok(MapSlope {
             by_coordinate: by_coordinate.collect(),
@@ -315,16 +315,23 @@ struct MapSlope {
 }
 
 /// Bordered equations of a Newton step.
-struct Border<'a> {
-    by_coordinate: &'a [f64],
+pub(super) struct Border<'a> {
+    /// Derivative of the period map by the further unknown.
+    pub(super) by_coordinate: &'a [f64],
     /// Unit of changes of state.
-    size: f64,
-    direction: &'a [f64],
+    pub(super) size: f64,
+    /// Last row of the equations.
+    pub(super) direction: &'a [f64],
 }
 
 impl Border<'_> {
     /// Solves the bordered equations by GMRES.
-    fn solve(&self, scene: &PeriodicScene, march: &mut StepMap<BeamDae>, right: &[f64]) -> Result<Vec<f64>, StepError> {
+    pub(super) fn solve(
+        &self,
+        scene: &PeriodicScene,
+        march: &mut StepMap<BeamDae>,
+        right: &[f64],
+    ) -> Result<Vec<f64>, StepError> {
         let n = self.by_coordinate.len();
         let most = (scene.dimension() + 1).min(MOST_DISTURBANCES);
         let map = |x: &mut [f64]| {
@@ -346,15 +353,30 @@ impl Border<'_> {
 }
 
 /// Sets the conserved volumes of a state to those of a scene.
-fn fill(scene: &PeriodicScene, y: &mut [f64]) {
+pub(super) fn fill(scene: &PeriodicScene, y: &mut [f64]) {
     for w in &scene.conserved {
         let lost = dot(w, &scene.guess) - dot(w, y);
         y.iter_mut().zip(w).for_each(|(y, w)| *y += lost * w);
     }
 }
 
-/// Simulates one period. Returns the final state minus the initial one, and the norm of half the range of every unknown.
-fn pass(scene: &PeriodicScene, march: &mut StepMap<BeamDae>, y: &[f64]) -> Result<(Vec<f64>, f64), StepError> {
+/// Norm of a motion of the size of the tolerance.
+pub(super) fn smallest(scene: &PeriodicScene) -> f64 {
+    scene.rtol * (scene.guess.len() as f64).sqrt()
+}
+
+/// One period from a state.
+pub(super) struct PeriodPass {
+    /// Final state minus the initial one.
+    pub(super) open: Vec<f64>,
+    /// Norm of half the range of every unknown.
+    pub(super) size: f64,
+    /// Rates at the end [1/s].
+    pub(super) rates: Vec<f64>,
+}
+
+/// Simulates one period.
+pub(super) fn pass(scene: &PeriodicScene, march: &mut StepMap<BeamDae>, y: &[f64]) -> Result<PeriodPass, StepError> {
     let (mut end, mut yp) = (y.to_vec(), vec![0.0; y.len()]);
     let (mut low, mut high) = (y.to_vec(), y.to_vec());
     march.go(&mut end, &mut yp, &mut |_, _, y| {
@@ -366,6 +388,10 @@ fn pass(scene: &PeriodicScene, march: &mut StepMap<BeamDae>, y: &[f64]) -> Resul
     scene.admit(&mut open);
     let mut half: Vec<f64> = high.iter().zip(&low).map(|(high, low)| 0.5 * (high - low)).collect();
     scene.admit(&mut half);
-    let least = scene.rtol * (y.len() as f64).sqrt();
-    Ok((open, dot(&half, &half).sqrt().max(least)))
+    scene.admit(&mut yp);
+    Ok(PeriodPass {
+        open,
+        size: dot(&half, &half).sqrt().max(smallest(scene)),
+        rates: yp,
+    })
 }

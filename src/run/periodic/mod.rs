@@ -1,4 +1,4 @@
-//! Steady cycle of a periodically driven case, computed directly.
+//! Steady cycle of a periodically driven case, or a self-oscillation, computed directly.
 //!
 //! ```text
 //! scene           a case in the long run: its periodic signals, its conserved volumes, its period map
@@ -6,6 +6,7 @@
 //! family          cycles over one number of the case, through folds
 //! shooting        Newton's iteration on the period map
 //! subharmonic     cycles that return after several periods
+//! self_oscillation  a cycle without a drive; its period is an unknown
 //! record          one period of the cycle as a run
 //! balanced_cycle  the cycle at a tolerance at which its energy balance closes
 //! sensitivity     derivatives of the cycle by numbers of the case
@@ -16,6 +17,7 @@ pub mod family;
 mod fluid;
 pub mod record;
 pub mod scene;
+pub mod self_oscillation;
 pub mod sensitivity;
 pub mod shooting;
 pub mod subharmonic;

@@ -22,6 +22,9 @@ const MOST_STEPS: usize = 5000;
 /// Method of the steps.
 pub const METHOD: TableauMethod = TableauMethod::Esdirk46;
 
+/// Receives time [s], unknowns and rates [1/s] at the end of a step. Returns false to end the motion.
+pub(super) type MotionWatcher<'a> = &'a mut dyn FnMut(f64, &[f64], &[f64]) -> bool;
+
 /// A case in the long run: the full case, signals without their starts, and a period.
 #[derive(Clone, Debug)]
 pub struct PeriodicScene {
@@ -35,6 +38,8 @@ pub struct PeriodicScene {
     pub method: TableauMethod,
     /// Number of drive periods in one period of the cycle.
     pub periods: usize,
+    /// True for a self-oscillation: its period is an unknown.
+    pub free_period: bool,
     /// First state of the search, scaled: the start of the case, at rest relative to its ends, with its amount of fluid in
     /// the long run.
     pub guess: Vec<f64>,
@@ -89,6 +94,7 @@ impl PeriodicScene {
             drive,
             stop: StopFlag::default(),
             periods: 1,
+            free_period: false,
             rtol: case.solver.rtol,
             method: METHOD,
         })
@@ -154,10 +160,7 @@ impl PeriodicScene {
     /// The integrator cannot follow the motion for a period.
     pub fn map(&self, dae: BeamDae, y: &[f64]) -> std::result::Result<StepMap<BeamDae>, StepError> {
         let end = self.drive.period;
-        let (mut dae, mut y, mut yp) = (dae, y.to_vec(), vec![0.0; y.len()]);
-        consistent_start(&mut dae, 0.0, &mut y, &mut yp, &StartOptions::default())
-            .map_err(|failure| StepError::new(0.0, failure.to_string()))?;
-        let mut solver = OneStep::new(dae, 0.0, &y, &yp, &self.options()).map_err(error)?;
+        let mut solver = self.begin(dae, y)?;
         let mut times = vec![0.0];
         while solver.time() < end {
             times.push(solver.step(end).map_err(error)?.time);
@@ -168,6 +171,27 @@ impl PeriodicScene {
             }
         }
         StepMap::new(solver.into_dae(), self.method, times)
+    }
+
+    /// Integrator at a state, which is made consistent.
+    fn begin(&self, mut dae: BeamDae, y: &[f64]) -> std::result::Result<OneStep<BeamDae>, StepError> {
+        let (mut y, mut yp) = (y.to_vec(), vec![0.0; y.len()]);
+        consistent_start(&mut dae, 0.0, &mut y, &mut yp, &StartOptions::default())
+            .map_err(|failure| StepError::new(0.0, failure.to_string()))?;
+        OneStep::new(dae, 0.0, &y, &yp, &self.options()).map_err(error)
+    }
+
+    /// Follows the motion from a state for at most a time [s]. Returns the last state.
+    pub(super) fn follow(&self, y: &[f64], end: f64, look: MotionWatcher) -> std::result::Result<Vec<f64>, StepError> {
+        let mut solver = self.begin(self.dae(), y)?;
+        while solver.time() < end {
+            solver.step(end).map_err(error)?;
+            self.asked_to_end()?;
+            if !look(solver.time(), solver.y(), solver.yp()) {
+                break;
+            }
+        }
+        Ok(solver.y().to_vec())
     }
 
     /// Options of the integrator whose steps are used.
@@ -199,10 +223,7 @@ impl PeriodicScene {
         periods: usize,
         search: &mut ShootingRecord,
     ) -> std::result::Result<Vec<f64>, StepError> {
-        let (mut dae, mut y, mut yp) = (self.dae(), y.to_vec(), vec![0.0; y.len()]);
-        consistent_start(&mut dae, 0.0, &mut y, &mut yp, &StartOptions::default())
-            .map_err(|failure| StepError::new(0.0, failure.to_string()))?;
-        let mut solver = OneStep::new(dae, 0.0, &y, &yp, &self.options()).map_err(error)?;
+        let mut solver = self.begin(self.dae(), y)?;
         for period in 1..=periods {
             let (end, before) = (self.drive.period * period as f64, solver.steps());
             while solver.time() < end {
@@ -243,7 +264,12 @@ impl PeriodicScene {
     /// Converts a state of another scene to a first guess in this one: in its scales and with the volumes of its start. `None` if the
     /// unknowns differ.
     pub fn take_over(&self, other: &Self, y: &[f64]) -> Option<Vec<f64>> {
-        let (new, old) = (&self.system.layout, &other.system.layout);
+        self.convert(&other.system, y)
+    }
+
+    /// Converts a state of another system as [`PeriodicScene::take_over`].
+    pub(super) fn convert(&self, other: &System, y: &[f64]) -> Option<Vec<f64>> {
+        let (new, old) = (&self.system.layout, &other.layout);
         let same = new.len == old.len && new.differential == old.differential && new.network.area == old.network.area;
         let mut taken: Vec<f64> = same.then(|| {
             let scales = old.scales.iter().zip(&new.scales);

@@ -6,13 +6,15 @@
 use serde::{Deserialize, Serialize};
 
 use super::PeriodicScene;
-use super::scene::fault;
+use super::scene::{fault, whole};
+use super::self_oscillation;
 use super::shooting::{Cycle, ShootingRecord, attempt, shoot};
 use crate::case::schema::Case;
 use crate::discrete::layout::LineLayout;
 use crate::error::{Error, Result};
 use crate::numerics::krylov;
 use crate::onestep::step_map::StepError;
+use crate::run::drive::comes_to_rest;
 use crate::run::stop::StopFlag;
 
 /// Largest number of periods of a cycle.
@@ -87,13 +89,30 @@ pub fn find(case: &Case, asked: usize) -> Result<(PeriodicScene, Cycle, Periods)
     find_until(case, asked, &StopFlag::default())
 }
 
-/// Finds the cycle of [`find`] unless `stop` requests an end.
+/// Finds the cycle of [`find`] unless `stop` requests an end; of a case whose signals all become constant a self-oscillation,
+/// see [`self_oscillation::find`].
 ///
 /// # Errors
 /// As [`find`], or a stop was requested.
 pub fn find_until(case: &Case, asked: usize, stop: &StopFlag) -> Result<(PeriodicScene, Cycle, Periods)> {
     if !(1..=MOST).contains(&asked) {
         return Err(Error::Usage(format!("--periods {asked}: must be from 1 to {MOST}")));
+    }
+    if comes_to_rest(&whole(case)?) {
+        if asked != 1 {
+            return Err(Error::Usage(format!(
+                "--periods {asked}: nothing drives {} periodically, and a self-oscillation has one period. Omit the option",
+                case.name
+            )));
+        }
+        let (scene, cycle) = self_oscillation::find(case, stop)?;
+        let periods = Periods {
+            asked,
+            shortest: 1,
+            waited: 0,
+            beside: false,
+        };
+        return Ok((scene, cycle, periods));
     }
     let single = PeriodicScene::new(case, None)?.heeding(stop);
     single.held(&case.name)?;
