@@ -158,7 +158,9 @@ fn state_space(asked: &ExportArguments, file: &Path, input: &str) -> Result<Exit
     if let Some(error) = asked.error {
         check_band([asked.from, asked.to], 2, asked.from < asked.to, "below")?;
         if !(MIN_ERROR..1.0).contains(&error) {
-            return Err(Error::Usage(format!("--error {error}: expected {MIN_ERROR} to 1")));
+            return Err(Error::Usage(format!(
+                "--error {error}: expected at least {MIN_ERROR:e}, below 1"
+            )));
         }
     }
     let case = case::load(&asked.dir, &asked.sets)?;
@@ -167,8 +169,8 @@ fn state_space(asked: &ExportArguments, file: &Path, input: &str) -> Result<Exit
         Some(error) => {
             let band = [asked.from, asked.to];
             let poles = poles(&case, asked.at, &response, band);
-            let known = poles.as_ref().cloned().unwrap_or_default();
-            let model = reduce(&response, band, &known, error)?;
+            let mut known = poles.as_ref().cloned().unwrap_or_default();
+            let model = reduce(&response, band, &mut known, error)?;
             (model, poles.map(|poles| poles.growing.len()))
         }
         None if response.about.y.len() > MOST_STATES => {
@@ -224,7 +226,7 @@ fn describe(reduction: &ModelReduction) -> String {
     format!(
         "error from {from} to {to} Hz: at most {} of the amplitude, or of its median over the band if that is larger (solved at {} frequencies)\n\
          static gain: {}\n\
-         poles: {kept} of the {} in the band; the outputs do not show the others\n",
+         poles: {kept} of the {} found in the band; the outputs do not show the others\n",
         error_percent(reduction.error),
         reduction.solved,
         if reduction.static_gain { "exact" } else { "none" },

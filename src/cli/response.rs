@@ -140,7 +140,9 @@ fn answer(case: &str, request: &Request, found: &BandResponse) -> Result<Respons
         warnings,
     };
     let coarse = |curve: &ResponseCurve| {
-        let [median, _] = curve.errors().filter(|[median, _]| *median > LARGE)?;
+        let [median, _] = curve
+            .errors(&answer.frequency_hz)
+            .filter(|[median, _]| *median > LARGE)?;
         Some(Code::ErrorEstimate.warning(format!(
             "error of {} by the mesh: {} in the median over frequencies. Use a finer mesh (/mesh/cells_per_segment, /mesh/cells_per_bladder) or a lower --to.",
             curve.output,

@@ -61,6 +61,8 @@ pub struct RationalFit {
 const BATCH: usize = 10;
 /// Ratio of numbers of nodes over which an error that does not decrease counts as rounding error, and the least such number.
 const STALLED: [usize; 2] = [2, 16];
+/// Largest number of nodes.
+const MOST: usize = 200;
 
 impl RationalFit {
     /// Fits samples; further nodes are added where the [`relative_error`] is largest, until it is below the tolerance. Half of the
@@ -83,7 +85,7 @@ impl RationalFit {
             }
             let of_best = best.as_ref().map_or(0, |best| best.nodes.len());
             let stalled = nodes.len() > STALLED[0] * of_best + STALLED[1];
-            if error <= tolerance || stalled || 2 * nodes.len() >= count {
+            if error <= tolerance || stalled || nodes.len() >= MOST || 2 * nodes.len() >= count {
                 break;
             }
             for _ in 0..1 + nodes.len() / BATCH {

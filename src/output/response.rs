@@ -77,7 +77,7 @@ pub fn describe(found: &ResponseRecord) -> String {
     );
     text.push('\n');
     for curve in found.curves() {
-        if let Some([median, largest]) = curve.errors() {
+        if let Some([median, largest]) = curve.errors(&found.frequency_hz) {
             let [median, largest] = [median, largest].map(error_percent);
             let _ = writeln!(
                 text,
@@ -86,7 +86,7 @@ pub fn describe(found: &ResponseRecord) -> String {
             );
         }
     }
-    let _ = writeln!(text, "{} in the band", counted(found.poles.len() as u64, "pole"));
+    let _ = writeln!(text, "{} found in the band", counted(found.poles.len() as u64, "pole"));
     text + &warnings(&found.warnings)
 }
 

@@ -60,18 +60,23 @@ pub struct ResponseCurve {
 }
 
 impl ResponseCurve {
-    /// Median of the relative error over frequencies, and largest error relative to the largest amplitude.
-    pub fn errors(&self) -> Option<[f64; 2]> {
+    /// Median of the relative error over the logarithm of the frequency, which does not depend on where samples are dense, and largest
+    /// error relative to the largest amplitude.
+    pub fn errors(&self, frequencies: &[f64]) -> Option<[f64; 2]> {
         let sizes = || self.real.iter().zip(&self.imag).map(|(re, im)| re.hypot(*im));
-        let mut relative: Vec<f64> = self
-            .error
-            .iter()
-            .zip(sizes())
-            .map(|(error, size)| error / size)
-            .collect();
-        relative.sort_by(f64::total_cmp);
+        let last = frequencies.len().checked_sub(1)?;
+        let width = |k: usize| (frequencies[(k + 1).min(last)] / frequencies[k.saturating_sub(1)]).ln();
+        let errors = self.error.iter().zip(sizes()).enumerate();
+        let mut relative: Vec<(f64, f64)> = errors.map(|(k, (error, size))| (error / size, width(k))).collect();
+        relative.sort_by(|a, b| a.0.total_cmp(&b.0));
+        let half = 0.5 * relative.iter().map(|(_, width)| width).sum::<f64>();
+        let mut below = 0.0;
+        let median = relative.iter().find(|(_, width)| {
+            below += width;
+            below >= half
+        });
         let largest = self.error.iter().copied().reduce(f64::max)? / sizes().fold(0.0, f64::max);
-        Some([*relative.get(relative.len() / 2)?, largest]).filter(|both| both.iter().all(|e| e.is_finite()))
+        Some([median?.0, largest]).filter(|both| both.iter().all(|e| e.is_finite()))
     }
 }
 

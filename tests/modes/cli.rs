@@ -248,7 +248,7 @@ fn responses_have_files_and_a_model() {
     let (code, said, error) = run(&asked);
     assert_eq!((code, error.as_str()), (0, ""));
     assert!(
-        said.contains("tip_u3_m") && said.contains("damping ratio") && said.contains("poles in the band"),
+        said.contains("tip_u3_m") && said.contains("damping ratio") && said.contains("poles found in the band"),
         "{said}"
     );
     let json: Value = serde_json::from_str(&fs::read_to_string(out.join("response.json")).unwrap()).unwrap();

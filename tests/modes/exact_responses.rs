@@ -100,7 +100,10 @@ fn a_vessel_behind_a_tube_resonates() {
     for (hz, found) in frequencies.into_iter().zip(found) {
         let s = Complex::new(0.0, TAU * hz);
         let exact = (s * s * inertance * compliance + s * resistance * compliance + 1.0).inv();
-        assert!((found - exact).norm() < 1e-9 * exact.norm(), "{hz} Hz: {found} for {exact}");
+        assert!(
+            (found - exact).norm() < 1e-9 * exact.norm(),
+            "{hz} Hz: {found} for {exact}"
+        );
     }
 }
 

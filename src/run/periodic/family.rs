@@ -73,6 +73,15 @@ impl FamilyState {
     pub fn direction(&self, size: f64) -> Vec<f64> {
         unit(&self.tangent, self.slope, size)
     }
+
+    /// The same cycle, with the tangent the other way.
+    pub fn reversed(&self) -> Self {
+        Self {
+            tangent: self.tangent.iter().map(|x| -x).collect(),
+            slope: -self.slope,
+            ..self.clone()
+        }
+    }
 }
 
 /// Vector of norm one along a change of state, in units of `size`, and of the coordinate.
@@ -96,6 +105,7 @@ pub struct FamilyMember {
 }
 
 /// Family of cycles over one number of the case.
+#[derive(Clone)]
 pub struct CycleFamily<'a> {
     /// Scene whose unknowns and scales all scenes of the family have.
     pub reference: PeriodicScene,

@@ -337,9 +337,11 @@ pub fn fault(error: StepError) -> Error {
         at: StopPoint::Time(error.time),
         what: error.what,
         unknown: None,
-        cause: Some("the motion could not be simulated over a period".into()),
+        cause: (error.time > 0.0).then(|| "the motion could not be simulated over a period".into()),
         hint: Some(
-            "a smaller amplitude, a tighter /solver/rtol, or damping may help; `slcbeam run` shows the motion".into(),
+            "a smaller amplitude, a tighter /solver/rtol, or damping may help, or --sweep from a value with a cycle; `slcbeam run` shows \
+             the motion"
+                .into(),
         ),
     }))
 }

@@ -17,6 +17,8 @@ use crate::run::record::HistoryColumn;
 use crate::run::response::LinearResponse;
 use crate::spectral::{self, EigenvalueOptions};
 
+/// Relative distance of an eigenvalue from the pole of an approximation that stands for it.
+const NEAR_POLE: f64 = 0.02;
 /// Largest number of pole pairs to compute in the band.
 const POLES: usize = 48;
 /// Offsets of the samples near a pole, in units of its decay rate.
@@ -123,20 +125,17 @@ pub struct BandResponse {
 pub fn respond(case: &Case, request: &Request, response: LinearResponse) -> Result<BandResponse> {
     let mut unknown = vec![];
     let found = poles(case, request.at, &response, request.band);
-    let Poles { poles, growing, whole } = found.unwrap_or_else(|why| {
+    let mut found = found.unwrap_or_else(|why| {
         unknown.push(format!("poles: {why}"));
         Poles {
             whole: true,
             ..Poles::default()
         }
     });
-    if !whole {
-        unknown.push(format!(
-            "poles beyond the {POLES} lowest pairs in the band. Peaks near them may be missing"
-        ));
-    }
-    let known: Vec<_> = poles.iter().map(|pole| pole.s).collect();
+    let known: Vec<_> = found.poles.iter().map(|pole| pole.s).collect();
     let approximated = ApproximatedResponse::new(&response, request.band, &known, OWN)?;
+    found.complete(&response, &approximated, request.band);
+    let Poles { poles, growing, .. } = found;
     let (frequencies, values) = sample(&approximated, request, &poles);
     let mut curves = vec![];
     for (place, output) in response.outputs.iter().enumerate() {
@@ -236,9 +235,9 @@ pub fn poles(
         poles.push(BandPole { s, bound });
     }
     poles.retain(|pole| (from..=to).contains(&pole.s.im));
-    poles.sort_by(|a, b| a.s.im.total_cmp(&b.s.im));
-    poles.dedup_by(|a, b| (a.s - b.s).norm() < 1e-9 * b.s.norm());
-    Ok(Poles { poles, growing, whole })
+    let mut found = Poles { poles, growing, whole };
+    found.sort();
+    Ok(found)
 }
 
 /// Poles in a band.
@@ -250,6 +249,34 @@ pub struct Poles {
     pub growing: Vec<Complex<f64>>,
     /// False if the band may contain further poles.
     pub whole: bool,
+}
+
+impl Poles {
+    fn sort(&mut self) {
+        self.poles.sort_by(|a, b| a.s.im.total_cmp(&b.s.im));
+        self.poles.dedup_by(|a, b| (a.s - b.s).norm() < 1e-9 * b.s.norm());
+    }
+
+    /// Adds poles that outputs show: the eigenvalues nearest to the poles of an approximation in a band [Hz], where a search for the
+    /// nearest to its middle finds others first.
+    fn complete(&mut self, response: &LinearResponse, shown: &ApproximatedResponse, band: [f64; 2]) {
+        let [from, to] = band.map(|hz| std::f64::consts::TAU * hz);
+        let within = |s: Complex<f64>| (from..=to).contains(&s.im);
+        let poles = if self.whole { vec![] } else { shown.fit.poles() };
+        for about in poles.into_iter().filter(|s| within(*s)) {
+            let nearest = spectral::nearest(&response.about.pencil(), about, 2, &EigenvalueOptions::default());
+            let near = |pair: &spectral::EigenPair| (pair.s - about).norm();
+            let pairs = nearest.map_or(vec![], |found| found.pairs).into_iter();
+            let found = pairs.min_by(|a, b| near(a).total_cmp(&near(b)));
+            if let Some(pair) = found.filter(|pair| within(pair.s) && near(pair) < NEAR_POLE * about.norm()) {
+                self.poles.push(BandPole {
+                    s: pair.s,
+                    bound: pair.error,
+                });
+            }
+        }
+        self.sort();
+    }
 }
 
 /// Linearization without the memory of unsteady friction.

@@ -39,13 +39,16 @@ struct PartialFractions {
     error: f64,
 }
 
-/// Reduces a response to a model whose error over a band [Hz] is at most `asked`. `found` are the modes of the case.
+/// Reduces a response to a model whose error over a band [Hz] is at most `asked`. `found` are the modes of the case; those that the
+/// outputs show are added.
 ///
 /// # Errors
 /// No model has this error; those of [`ApproximatedResponse::new`].
-pub fn reduce(response: &LinearResponse, band: [f64; 2], found: &Poles, asked: f64) -> Result<StateSpace> {
+pub fn reduce(response: &LinearResponse, band: [f64; 2], found: &mut Poles, asked: f64) -> Result<StateSpace> {
     let modes: Vec<C> = found.poles.iter().map(|pole| pole.s).collect();
     let reference = ApproximatedResponse::new(response, band, &modes, (REFERENCE * asked).max(LEAST))?;
+    found.complete(response, &reference, band);
+    let modes: Vec<C> = found.poles.iter().map(|pole| pole.s).collect();
     let data = dense(&reference, band, &modes);
     let permitted = asked - reference.error;
     let mut least = f64::INFINITY;

@@ -130,7 +130,8 @@ struct BranchStart {
 /// as for one cycle. Cycles stored in `evaluations` are not searched again.
 ///
 /// A branch begins at the first value and ends where it leaves the range of values. It has a member at every requested value, on every
-/// passage. If values remain that no branch reaches, a further branch begins at the first of them.
+/// passage. If values remain that no branch reaches, a further branch begins at the first of them. It is followed in both directions if
+/// values before it have no cycle of their own.
 ///
 /// # Errors
 /// A case without a period, a beam that nothing holds.
@@ -190,23 +191,41 @@ pub fn along(
             start.state,
             found.members.last().map(|member| member.floquet.clone()),
         ) {
-            let follower = BranchFollower {
-                family,
+            let follower = |way: &str| BranchFollower {
+                family: family.clone(),
                 values: &values,
-                evaluations: evaluations.scoped(&format!("from {k}")),
+                evaluations: evaluations.scoped(&format!("{way} {k}")),
                 stop,
             };
-            let followed = follower.follow((state, floquet), &mut finished, report)?;
+            let number = found.members.last().map_or(0, |member| member.branch);
+            let numbered = |member: CycleMember| CycleMember {
+                branch: number,
+                ..member
+            };
+            // values before that have no cycle of their own may be on the other side of this branch
+            if found.missing.iter().any(|(value, _)| values[..k].contains(value)) {
+                let back = (state.reversed(), floquet.clone());
+                let followed = follower("back from").follow(back, &mut finished, report)?;
+                open.extend(followed.open);
+                let reached = |value: &f64| {
+                    let requested = |member: &CycleMember| member.kind == MemberKind::Requested;
+                    followed
+                        .members
+                        .iter()
+                        .any(|member| requested(member) && member.value == *value)
+                };
+                found.missing.retain(|(value, _)| !reached(value));
+                found.missing.extend(followed.missing);
+                let place = found.members.len() - 1;
+                let members = followed.members.into_iter().rev().map(numbered);
+                found.members.splice(place..place, members);
+            }
+            let followed = follower("from").follow((state, floquet), &mut finished, report)?;
             y = followed.last;
             open.extend(followed.open);
             found.missing.extend(followed.missing);
             branch += usize::from(followed.ended);
-            let number = found.members.last().map_or(0, |member| member.branch);
-            let members = followed.members.into_iter();
-            found.members.extend(members.map(|member| CycleMember {
-                branch: number,
-                ..member
-            }));
+            found.members.extend(followed.members.into_iter().map(numbered));
         }
         before = Some((scene, y));
     }
