@@ -19,6 +19,8 @@ use crate::spectral::{self, EigenvalueOptions};
 
 /// Relative distance of an eigenvalue from the pole of an approximation that stands for it.
 const NEAR_POLE: f64 = 0.02;
+/// Relative difference of one eigenvalue found twice.
+const SAME_POLE: f64 = 1e-6;
 /// Largest number of pole pairs to compute in the band.
 const POLES: usize = 48;
 /// Offsets of the samples near a pole, in units of its decay rate.
@@ -268,7 +270,11 @@ impl Poles {
             let near = |pair: &spectral::EigenPair| (pair.s - about).norm();
             let pairs = nearest.map_or(vec![], |found| found.pairs).into_iter();
             let found = pairs.min_by(|a, b| near(a).total_cmp(&near(b)));
-            if let Some(pair) = found.filter(|pair| within(pair.s) && near(pair) < NEAR_POLE * about.norm()) {
+            let Some(pair) = found.filter(|pair| within(pair.s) && near(pair) < NEAR_POLE * about.norm()) else {
+                continue;
+            };
+            let known = |pole: &BandPole| (pole.s - pair.s).norm() < SAME_POLE * pair.s.norm();
+            if !self.poles.iter().any(known) {
                 self.poles.push(BandPole {
                     s: pair.s,
                     bound: pair.error,
