@@ -62,7 +62,7 @@ const BATCH: usize = 10;
 /// Ratio of numbers of nodes over which an error that does not decrease counts as rounding error, and the least such number.
 const STALLED: [usize; 2] = [2, 16];
 /// Largest number of nodes.
-const MOST: usize = 200;
+const MOST: usize = 100;
 
 impl RationalFit {
     /// Fits samples; further nodes are added where the [`relative_error`] is largest, until it is below the tolerance. Half of the

@@ -238,3 +238,20 @@ fn poles_that_are_shown_are_found() {
     let (_, reduction) = reduced(&case, &response, [0.1, 20.0], 1e-3);
     assert!(reduction.modes[0] > 0 && reduction.modes[1] > 0, "{reduction:?}");
 }
+
+/// Goal: a mode without damping is named, since no model has an error at its infinite peak.
+#[test]
+fn a_mode_without_damping_has_no_model() {
+    let mut case = shipped("dry-cantilever");
+    case["beam"]["damping"] = json!(null);
+    case["ends"]["tip"] = json!({"free": {"force_x_n": 0.0}});
+    case["loads"] = json!([]);
+    let case = checked(&case);
+    let response = response(&case, "/ends/tip/free/force_x_n", &["tip_u1"]);
+    let mut found = poles(&case, None, &response, [1.0, 200.0]).unwrap();
+    let refused = reduce(&response, [1.0, 200.0], &mut found, 1e-3)
+        .err()
+        .unwrap()
+        .to_string();
+    assert!(refused.contains("has no damping"), "{refused}");
+}

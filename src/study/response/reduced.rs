@@ -5,7 +5,7 @@ use nalgebra::{Complex, DMatrix, DVector};
 use super::approximation::ApproximatedResponse;
 use super::{BESIDE, Poles};
 use crate::error::Result;
-use crate::error::numbers::error_percent;
+use crate::error::numbers::{error_percent, significant};
 use crate::numerics::rational::{AxisSamples, RationalFit, relative_error};
 use crate::run::response::LinearResponse;
 use crate::run::response::state_space::{ModelReduction, StateSpace};
@@ -43,9 +43,15 @@ struct PartialFractions {
 /// outputs show are added.
 ///
 /// # Errors
-/// No model has this error; those of [`ApproximatedResponse::new`].
+/// A mode in the band has no damping; no model has this error; those of [`ApproximatedResponse::new`].
 pub fn reduce(response: &LinearResponse, band: [f64; 2], found: &mut Poles, asked: f64) -> Result<StateSpace> {
     let modes: Vec<C> = found.poles.iter().map(|pole| pole.s).collect();
+    if let Some(mode) = modes.iter().find(|mode| mode.re == 0.0) {
+        return Err(response.no_model(&format!(
+            "the mode at {} Hz has no damping, so that its peak is infinite. Use damping (/beam/damping) or a band without it (--from, --to)",
+            significant(mode.im / std::f64::consts::TAU, 5)
+        )));
+    }
     let reference = ApproximatedResponse::new(response, band, &modes, (REFERENCE * asked).max(LEAST))?;
     found.complete(response, &reference, band);
     let modes: Vec<C> = found.poles.iter().map(|pole| pole.s).collect();
