@@ -341,7 +341,7 @@ fn periodic_suggests_what_there_is() {
         .output()
         .expect("it starts");
     assert_eq!(answer.status.code(), Some(2));
-    assert!(stderr(&answer).contains("slcbeam floquet"), "{}", stderr(&answer));
+    assert!(stderr(&answer).contains("slcbeam modes"), "{}", stderr(&answer));
 }
 
 /// Goal: the benchmark's committed lock names what the program depends on, so that running it changes no file.
