@@ -73,15 +73,6 @@ impl FamilyState {
     pub fn direction(&self, size: f64) -> Vec<f64> {
         unit(&self.tangent, self.slope, size)
     }
-
-    /// The same cycle, with the tangent the other way.
-    pub fn reversed(&self) -> Self {
-        Self {
-            tangent: self.tangent.iter().map(|x| -x).collect(),
-            slope: -self.slope,
-            ..self.clone()
-        }
-    }
 }
 
 /// Vector of norm one along a change of state, in units of `size`, and of the coordinate.

@@ -204,8 +204,12 @@ pub fn along(
             };
             // values before that have no cycle of their own may be on the other side of this branch
             if found.missing.iter().any(|(value, _)| values[..k].contains(value)) {
-                let back = (state.reversed(), floquet.clone());
-                let followed = follower("back from").follow(back, &mut finished, report)?;
+                let back = FamilyState {
+                    tangent: state.tangent.iter().map(|x| -x).collect(),
+                    slope: -state.slope,
+                    ..state.clone()
+                };
+                let followed = follower("back from").follow((back, floquet.clone()), &mut finished, report)?;
                 open.extend(followed.open);
                 let reached = |value: &f64| {
                     let requested = |member: &CycleMember| member.kind == MemberKind::Requested;
