@@ -23,6 +23,10 @@ const SAME: [f64; 2] = [0.2, 1e-6];
 const FAST: f64 = 50.0;
 /// Smallest damping ratio of a pole that no growing mode confirms.
 const STABLE: f64 = 1e-7;
+/// Relative distances from a mode without damping, and ratio of responses there from which on an output shows its infinite peak.
+const CLOSE: f64 = 1e-7;
+const BESIDE_PEAK: f64 = 1e-2;
+const INFINITE: f64 = 1e3;
 /// Samples of the band at which models are compared.
 const DENSE: usize = 300;
 
@@ -43,14 +47,20 @@ struct PartialFractions {
 /// outputs show are added.
 ///
 /// # Errors
-/// A mode in the band has no damping; no model has this error; those of [`ApproximatedResponse::new`].
+/// Outputs show a mode in the band that has no damping; no model has this error; those of [`ApproximatedResponse::new`].
 pub fn reduce(response: &LinearResponse, band: [f64; 2], found: &mut Poles, asked: f64) -> Result<StateSpace> {
     let modes: Vec<C> = found.poles.iter().map(|pole| pole.s).collect();
-    if let Some(mode) = modes.iter().find(|mode| mode.re == 0.0) {
-        return Err(response.no_model(&format!(
-            "the mode at {} Hz has no damping, so that its peak is infinite. Use damping (/beam/damping) or a band without it (--from, --to)",
-            significant(mode.im / std::f64::consts::TAU, 5)
-        )));
+    for mode in modes.iter().filter(|mode| mode.re == 0.0) {
+        let hz = mode.im / std::f64::consts::TAU;
+        let mut solver = response.solver()?;
+        let [near, beside] = [CLOSE, BESIDE_PEAK].map(|by| solver.at(hz * (1.0 + by)));
+        let infinite = |(near, beside): (&C, &C)| near.norm() > INFINITE * beside.norm();
+        if near?.iter().zip(&beside?).any(infinite) {
+            return Err(response.no_model(&format!(
+                "the mode at {} Hz has no damping, so that its peak is infinite. Use damping (/beam/damping) or a band without it (--from, --to)",
+                significant(hz, 5)
+            )));
+        }
     }
     let reference = ApproximatedResponse::new(response, band, &modes, (REFERENCE * asked).max(LEAST))?;
     found.complete(response, &reference, band);
