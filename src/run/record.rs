@@ -85,9 +85,13 @@ pub enum Sampled {
 /// Receives the results of a run, in order of time.
 pub trait Recorder {
     /// Called once, before the first row.
-    fn begin(&mut self, header: &Header) -> Result<()>;
+    fn begin(&mut self, _: &Header) -> Result<()> {
+        Ok(())
+    }
     /// Receives one row of the history, as long as `header.columns`.
-    fn history(&mut self, row: &[f64]) -> Result<()>;
+    fn history(&mut self, _: &[f64]) -> Result<()> {
+        Ok(())
+    }
     /// Receives one row of derivatives, after the history row of the same instant, as long as `header.sensitivities`.
     fn sensitivities(&mut self, _: &[f64]) -> Result<()> {
         Ok(())
@@ -97,7 +101,9 @@ pub trait Recorder {
         Ok(())
     }
     /// Receives all fields at one instant, in the order of `header.fields`.
-    fn fields(&mut self, t: f64, arrays: &[&[f64]]) -> Result<()>;
+    fn fields(&mut self, _: f64, _: &[&[f64]]) -> Result<()> {
+        Ok(())
+    }
     /// Called after every accepted step, and occasionally within an expensive one; must be cheap.
     fn progress(&mut self, progress: &Progress) -> Result<Control>;
     /// Called at every checkpoint time; all earlier data must be safely stored when it returns.
@@ -178,15 +184,6 @@ impl ThinnedRows {
 pub struct Unrecorded<F: FnMut(&Progress) -> Control>(pub F);
 
 impl<F: FnMut(&Progress) -> Control> Recorder for Unrecorded<F> {
-    fn begin(&mut self, _: &Header) -> Result<()> {
-        Ok(())
-    }
-    fn history(&mut self, _: &[f64]) -> Result<()> {
-        Ok(())
-    }
-    fn fields(&mut self, _: f64, _: &[&[f64]]) -> Result<()> {
-        Ok(())
-    }
     fn progress(&mut self, progress: &Progress) -> Result<Control> {
         Ok((self.0)(progress))
     }
@@ -207,9 +204,6 @@ impl<F: FnMut(&Progress) -> Control> Recorder for ThinnedRecorder<F> {
     }
     fn history(&mut self, row: &[f64]) -> Result<()> {
         self.rows.push(row);
-        Ok(())
-    }
-    fn fields(&mut self, _: f64, _: &[&[f64]]) -> Result<()> {
         Ok(())
     }
     fn progress(&mut self, progress: &Progress) -> Result<Control> {
