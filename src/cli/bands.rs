@@ -16,7 +16,9 @@ use crate::output::report;
 use crate::results;
 use crate::results::bands::{AttenuationRecord, BandsRecord, GapRecord, LatticeModeRecord, WaveMotion, WaveRecord};
 use crate::run::bands::waves::Lattice;
-use crate::study::bands::{BandGap, BandMode, BandStructure, BandWave, bands as compute, coupling_number, decibel};
+use crate::study::bands::{
+    BandGap, BandMode, BandStructure, BandWave, bands as compute, coupling_number, decibel, spectrum,
+};
 
 /// `bands`.
 #[derive(Debug, Args)]
@@ -75,7 +77,7 @@ pub fn bands(asked: &BandsArguments) -> Result<ExitCode> {
 fn answer(case: &str, band: [f64; 2], found: &BandStructure) -> BandsRecord {
     let (about, cell) = (&found.lattice.about, &found.lattice.cell);
     let modes = |all: &[BandMode]| -> Vec<LatticeModeRecord> { all.iter().map(mode).collect() };
-    let (standing, spectrum) = (modes(&found.standing), modes(&found.spectrum));
+    let (standing, spectrum) = (modes(&found.standing), modes(&spectrum(&found.lattice, band)));
     let mut warnings = vec![];
     if let Some(first) = cell.others.first() {
         warnings.push(Code::OtherCells.warning(format!(

@@ -17,6 +17,7 @@ use crate::error::{Error, Result};
 use crate::output::columns::table;
 use crate::output::folder::replace;
 use crate::output::numbers::significant;
+use crate::study::bands::by_sealing;
 
 /// `coefficients`.
 #[derive(Debug, Args)]
@@ -243,18 +244,13 @@ fn neutral_axis(numbers: &Numbers) -> f64 {
     -numbers.compliance[0][1] / numbers.compliance[1][1]
 }
 
-/// Share of the bending stiffness that the fluid of sealed bladders adds; none without bladders. With the areas `c a` by a moment and the
-/// areas `P` by pressures of the rows it is `aᵀ P⁻¹ a/c_MM`, as `bands` has it for a beam.
+/// Share of the bending stiffness that the fluid of sealed bladders adds, `aᵀ P⁻¹ a/c_MM`, as `bands` has it for a beam; none without
+/// bladders.
 fn coupling_number(numbers: &Numbers) -> Option<f64> {
     let c = &numbers.compliance;
-    let ([m, n], [p, q, x]) = ([c[1][2], c[1][3]], [c[2][2], c[3][3], c[2][3]]);
-    let own = match (p > 0.0, q > 0.0) {
-        (true, true) => (m * m * q - 2.0 * x * m * n + n * n * p) / (p * q - x * x),
-        (true, false) => m * m / p,
-        (false, true) => n * n / q,
-        (false, false) => return None,
-    };
-    Some(own / c[1][1])
+    let mut rows = vec![(c[1][2], c[2][2]), (c[1][3], c[3][3])];
+    rows.retain(|(_, by_pressure)| *by_pressure > 0.0);
+    Some(by_sealing(&rows, c[2][3])? / c[1][1])
 }
 
 /// Text about the coupling of bending and fluid.

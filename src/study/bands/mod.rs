@@ -116,8 +116,6 @@ pub struct BandStructure {
     pub gaps: Vec<BandGap>,
     /// Oscillations of wave numbers 0 and π, in ascending order of frequency.
     pub standing: Vec<BandMode>,
-    /// Oscillations over the wave number.
-    pub spectrum: Vec<BandMode>,
     /// Reasons why errors are unknown.
     pub unknown: Vec<String>,
 }
@@ -131,18 +129,24 @@ pub fn coupling_number(lattice: &Lattice) -> Option<f64> {
     let node = segment * system.mesh.cells_per_segment;
     let stiffness = system.sections.bending[node];
     let rows = wet.pair(segment).into_iter().filter(|bladder| wet.has(*bladder));
-    let laws = rows.map(|bladder| wet.area_of(bladder)).collect::<Vec<_>>();
-    let own = match laws[..] {
-        [one] => one.moment_mean.powi(2) / one.per_pressure,
-        // the rows bend to opposite sides
-        [upper, lower] => {
-            let (m, n, x) = (upper.moment_mean, lower.moment_mean, wet.per_other_pressure_of(segment));
-            let [p, q] = [upper.per_pressure, lower.per_pressure];
-            (m * m * q + 2.0 * x * m * n + n * n * p) / (p * q - x * x)
-        }
-        _ => return None,
-    };
+    // the rows bend to opposite sides
+    let sides = [1.0, -1.0].into_iter();
+    let rows = rows.map(|bladder| wet.area_of(bladder)).zip(sides);
+    let rows: Vec<(f64, f64)> = rows
+        .map(|(law, side)| (side * law.moment_mean, law.per_pressure))
+        .collect();
+    let own = by_sealing(&rows, wet.per_other_pressure_of(segment))?;
     Some(stiffness * ratio * own)
+}
+
+/// `aᵀ P⁻¹ a` of one row of bladders, or two, with the areas a by a moment and P by pressures, each row with its entries; `other` is the
+/// area by the pressure in the other row. None without rows.
+pub fn by_sealing(rows: &[(f64, f64)], other: f64) -> Option<f64> {
+    match *rows {
+        [(a, p)] => Some(a * a / p),
+        [(a, p), (b, q)] => Some((a * a * q - 2.0 * other * a * b + b * b * p) / (p * q - other * other)),
+        _ => None,
+    }
 }
 
 /// Band from 1e-3 of its last frequency [Hz], which is above the lowest oscillations of wave numbers 0 and π: their first gaps are in it.
@@ -215,17 +219,23 @@ pub fn bands(case: &Case, lattice: Lattice, band: [f64; 2], points: usize, compa
         motion.strongest()
     });
     gaps.sort_by(|a, b| a.edges[0].total_cmp(&b.edges[0]));
-    let spectrum = (0..SPECTRUM).flat_map(|k| modes_at(&lattice, PI * k as f64 / (SPECTRUM - 1) as f64, band));
     Ok(BandStructure {
         reciprocal,
         strongest,
         waves: waves.into_iter().flatten().collect(),
         gaps,
         standing,
-        spectrum: spectrum.collect(),
         unknown,
         lattice,
     })
+}
+
+/// Oscillations in a band [Hz] over the wave number, from 0 to π.
+pub fn spectrum(lattice: &Lattice, band: [f64; 2]) -> Vec<BandMode> {
+    let wave_numbers = (0..SPECTRUM).map(|k| PI * k as f64 / (SPECTRUM - 1) as f64);
+    wave_numbers
+        .flat_map(|wave_number| modes_at(lattice, wave_number, band))
+        .collect()
 }
 
 /// Cases of the meshes that a result is compared with, and the factors of the differences: twice the cells of the beam, and of bladders.
