@@ -4,7 +4,6 @@ use serde::{Deserialize, Serialize};
 
 use crate::case::Case;
 use crate::case::spans;
-use crate::discrete::quantities::Interest;
 use crate::error::Result;
 use crate::model::Model;
 
@@ -72,14 +71,6 @@ impl RoundingScales {
             "Pa" => self.pressure,
             "J" => (NOTHING * energy).max(self.energy),
             _ => 0.0,
-        }
-    }
-
-    /// Unit and magnitude in which a quantity is compared with others; an angle is compared as angle times length.
-    pub fn weighed(&self, name: &str, size: f64) -> (&'static str, f64) {
-        match Interest::named(name).map_or("1", Interest::unit) {
-            "rad" => ("m", size * self.length),
-            unit => (unit, size),
         }
     }
 }

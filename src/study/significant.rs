@@ -44,6 +44,15 @@ pub fn counted_of_probes<'a>(
     summary.probes.iter().filter(counts)
 }
 
+/// Unit and magnitude in which a quantity is compared with others: an angle as displacement at the length, a moment as force there.
+pub fn weighed(name: &str, size: f64, floors: &RoundingScales) -> (&'static str, f64) {
+    match figures::unit(name) {
+        "rad" => ("m", size * floors.length),
+        "N m" => ("N", size / floors.length),
+        unit => (unit, size),
+    }
+}
+
 /// Quantities that exceed rounding errors, with their names. Compares with others of the same unit, angles with displacements over the
 /// beam's length, and energies with the largest one stored or passed. A further limit is the expected scale of the case. A ratio of
 /// energies counts if both energies do. Non-finite figures always count.
@@ -55,10 +64,10 @@ pub fn counted<'a>(
     let energy = energies.fold(0.0_f64, |largest, e| largest.max(e.abs()));
     let all = &summary.quantities;
     let counts = move |name: &str, q: &Quantity| {
-        let (unit, own) = floors.weighed(name, q.size());
+        let (unit, own) = weighed(name, q.size(), floors);
         let alike = all
             .iter()
-            .map(|(other, q)| floors.weighed(other, q.size()))
+            .map(|(other, q)| weighed(other, q.size(), floors))
             .filter(|(u, _)| *u == unit);
         let largest = NOTHING * alike.map(|(_, size)| size).fold(0.0, f64::max);
         own > largest.max(floors.of_unit(unit, energy)) || q.figures().any(|(_, x)| !x.is_finite())

@@ -4,8 +4,7 @@ use std::collections::BTreeMap;
 
 use crate::discrete::quantities::Interest;
 use crate::run::summary::{Figures, Quantity, Summary, has_unit_of_quantity, largest_error};
-use crate::study::significant::{RoundingScales, counted, counted_of_ports, counted_of_probes};
-use crate::study::sweep::unit::unit;
+use crate::study::significant::{RoundingScales, counted, counted_of_ports, counted_of_probes, weighed};
 
 /// Errors by the name of a quantity, probe or port, relative to its largest figure.
 pub type Relative = BTreeMap<String, f64>;
@@ -142,13 +141,10 @@ pub fn factors_of_sizes<'a>(summary: &'a Summary, floors: &RoundingScales, small
         ports,
         ..
     } = summary;
-    let weighed = |name: &str, size: f64| match unit(name) {
-        "rad" => ("m", size * floors.length),
-        "N m" => ("N", size / floors.length),
-        unit => (unit, size),
-    };
     let all = quantities.iter().chain(probes).chain(ports);
-    let sizes: Vec<(&str, (&str, f64))> = all.map(|(name, q)| (name.as_str(), weighed(name, q.size()))).collect();
+    let sizes: Vec<(&str, (&str, f64))> = all
+        .map(|(name, q)| (name.as_str(), weighed(name, q.size(), floors)))
+        .collect();
     let energies = summary.balances.energy_j.values().map(|energy| ("J", energy.abs()));
     let mut largest: BTreeMap<&str, f64> = BTreeMap::new();
     for (unit, size) in sizes.iter().map(|(_, weighed)| *weighed).chain(energies) {
