@@ -3,7 +3,9 @@
 use serde::{Deserialize, Serialize};
 
 use super::scene::PeriodicScene;
-use super::shooting::{Cycle, FOUND, MOST_DISTURBANCES, NEAR, ShootingRecord, attempt, finish, lost};
+use super::shooting::{
+    Convergence, Cycle, FullSteps, MOST_DISTURBANCES, PeriodPass, ShootingRecord, attempt, finish, lost, pass,
+};
 use crate::case::schema::Case;
 use crate::dae::BeamDae;
 use crate::numerics::kernels::dot;
@@ -193,7 +195,7 @@ impl CycleFamily<'_> {
         let (mut case, mut scene) = self.at(self.scale.value(coordinate))?;
         fill(&scene, &mut y);
         let mut march = scene.map(scene.dae(), &y)?;
-        let (mut fresh, mut before) = (false, f64::INFINITY);
+        let mut steps = FullSteps::new();
         for _ in 0..ITERATIONS {
             let slope = self.slope(&scene, &mut march, &y, coordinate)?;
             search.periods += 2;
@@ -213,13 +215,10 @@ impl CycleFamily<'_> {
             let correction = scene
                 .size(&change, &y)
                 .max(moved.abs() / (scene.rtol * value(coordinate).abs().max(self.scale.step.abs())));
-            let stagnates = correction <= 1.0 && correction > 0.5 * before;
-            if fresh && (correction <= FOUND || stagnates) {
-                search.correction = correction;
-                search.residual = scene.size(&slope.open, &y);
-                search.steps_per_period = march.times().len() - 1;
-                search.work += march.work();
-                let mut cycle = finish(&scene, march, y, &search)?;
+            let convergence = steps.judge(correction);
+            if let Convergence::Found = convergence {
+                let residual = scene.size(&slope.open, &y);
+                let mut cycle = finish(&scene, march, y, &mut search, [correction, residual])?;
                 let state = self.tangent(&scene, &mut cycle, &slope, direction, coordinate)?;
                 return Ok(FamilyMember {
                     state,
@@ -228,19 +227,17 @@ impl CycleFamily<'_> {
                     cycle,
                 });
             }
-            if !correction.is_finite() || correction > 4.0 * before {
+            if let Convergence::Lost = convergence {
                 break;
             }
-            before = correction;
             y.iter_mut().zip(&change).for_each(|(y, change)| *y += change);
             coordinate += step[n];
             let old = scene.drive.period;
             (case, scene) = self.at(value(coordinate))?;
             fill(&scene, &mut y);
-            if !fresh && correction <= NEAR {
+            if let Convergence::Near = convergence {
                 search.work += march.work();
                 march = scene.map(scene.dae(), &y)?;
-                (fresh, before) = (true, f64::INFINITY);
             } else {
                 march.replace(scene.dae(), scene.drive.period / old);
             }
@@ -359,40 +356,4 @@ pub(super) fn fill(scene: &PeriodicScene, y: &mut [f64]) {
         let lost = dot(w, &scene.guess) - dot(w, y);
         y.iter_mut().zip(w).for_each(|(y, w)| *y += lost * w);
     }
-}
-
-/// Norm of a motion of the size of the tolerance.
-pub(super) fn smallest(scene: &PeriodicScene) -> f64 {
-    scene.rtol * (scene.guess.len() as f64).sqrt()
-}
-
-/// One period from a state.
-pub(super) struct PeriodPass {
-    /// Final state minus the initial one.
-    pub(super) open: Vec<f64>,
-    /// Norm of half the range of every unknown.
-    pub(super) size: f64,
-    /// Rates at the end [1/s].
-    pub(super) rates: Vec<f64>,
-}
-
-/// Simulates one period.
-pub(super) fn pass(scene: &PeriodicScene, march: &mut StepMap<BeamDae>, y: &[f64]) -> Result<PeriodPass, StepError> {
-    let (mut end, mut yp) = (y.to_vec(), vec![0.0; y.len()]);
-    let (mut low, mut high) = (y.to_vec(), y.to_vec());
-    march.go(&mut end, &mut yp, &mut |_, _, y| {
-        for ((low, high), y) in low.iter_mut().zip(&mut high).zip(y) {
-            (*low, *high) = (low.min(*y), high.max(*y));
-        }
-    })?;
-    let mut open: Vec<f64> = end.iter().zip(y).map(|(end, y)| end - y).collect();
-    scene.admit(&mut open);
-    let mut half: Vec<f64> = high.iter().zip(&low).map(|(high, low)| 0.5 * (high - low)).collect();
-    scene.admit(&mut half);
-    scene.admit(&mut yp);
-    Ok(PeriodPass {
-        open,
-        size: dot(&half, &half).sqrt().max(smallest(scene)),
-        rates: yp,
-    })
 }

@@ -3,9 +3,9 @@
 use std::f64::consts::TAU;
 
 use super::PeriodicScene;
-use super::family::{Border, fill, pass, smallest};
+use super::family::{Border, fill};
 use super::scene::{fault, system};
-use super::shooting::{Cycle, FOUND, NEAR, ShootingRecord, finish, lost};
+use super::shooting::{Convergence, Cycle, FullSteps, Ranges, ShootingRecord, finish, lost, pass, smallest};
 use crate::case::schema::Case;
 use crate::discrete::layout::LineLayout;
 use crate::error::numbers::quantity;
@@ -16,7 +16,7 @@ use crate::run::checkpoint::Checkpoint;
 use crate::run::drive::settles_at;
 use crate::run::dynamics;
 use crate::run::modes::{self, ModeOptions};
-use crate::run::record::{Control, Header, Progress, Recorder};
+use crate::run::record::{Control, Progress, Recorder};
 use crate::run::stop::StopFlag;
 
 /// Share of the time of the case that is simulated before the motion is examined.
@@ -115,7 +115,7 @@ fn attempt(
     fill(scene, &mut y);
     let mut march = scene.map(scene.dae(), &y)?;
     let direction: Vec<f64> = flow.iter().copied().chain([0.0]).collect();
-    let (mut fresh, mut before) = (false, f64::INFINITY);
+    let mut steps = FullSteps::new();
     for _ in 0..ITERATIONS {
         let here = pass(scene, &mut march, &y)?;
         search.periods += 1;
@@ -134,23 +134,21 @@ fn attempt(
         let part = (LONGEST / step[n].abs()).min(1.0);
         let change: Vec<f64> = step[..n].iter().map(|x| part * x * here.size).collect();
         let correction = scene.size(&change, &y).max(step[n].abs() / scene.rtol);
-        if fresh && (correction <= FOUND || correction <= 1.0 && correction > 0.5 * before) {
-            (search.correction, search.residual) = (correction, scene.size(&here.open, &y));
-            search.steps_per_period = march.times().len() - 1;
-            search.work += march.work();
-            return finish(scene, march, y, search);
+        let convergence = steps.judge(correction);
+        match convergence {
+            Convergence::Found => {
+                let residual = scene.size(&here.open, &y);
+                return finish(scene, march, y, search, [correction, residual]);
+            }
+            Convergence::Lost => break,
+            Convergence::Near | Convergence::Far => {}
         }
-        if !correction.is_finite() || correction > 4.0 * before {
-            break;
-        }
-        before = correction;
         y.iter_mut().zip(&change).for_each(|(y, change)| *y += change);
         let factor = 1.0 + part * step[n];
         scene.drive.period *= factor;
-        if !fresh && correction <= NEAR {
+        if let Convergence::Near = convergence {
             search.work += march.work();
             march = scene.map(march.into_dae(), &y)?;
-            (fresh, before) = (true, f64::INFINITY);
         } else {
             march.replace(scene.dae(), factor);
         }
@@ -199,18 +197,6 @@ struct FirstCheckpoint {
 }
 
 impl Recorder for FirstCheckpoint {
-    fn begin(&mut self, _: &Header) -> Result<()> {
-        Ok(())
-    }
-
-    fn history(&mut self, _: &[f64]) -> Result<()> {
-        Ok(())
-    }
-
-    fn fields(&mut self, _: f64, _: &[&[f64]]) -> Result<()> {
-        Ok(())
-    }
-
     fn progress(&mut self, _: &Progress) -> Result<Control> {
         Ok(match self.y.is_some() || self.stop.raised() {
             true => Control::Stop(crate::run::stop::INTERRUPTED.into()),
@@ -226,12 +212,10 @@ impl Recorder for FirstCheckpoint {
 
 /// Follows the motion for a time [s].
 fn observe(scene: &PeriodicScene, y: &[f64], time: f64) -> std::result::Result<Motion, StepError> {
-    let (mut low, mut high) = (y.to_vec(), y.to_vec());
+    let mut ranges = Ranges::new(y);
     let mut fastest = (0.0, y.to_vec(), vec![0.0; y.len()]);
     scene.follow(y, time, &mut |_, y, yp| {
-        for ((low, high), y) in low.iter_mut().zip(&mut high).zip(y) {
-            (*low, *high) = (low.min(*y), high.max(*y));
-        }
+        ranges.add(y);
         let flow = section(scene, yp);
         let speed = dot(&flow, &flow).sqrt();
         if speed > fastest.0 {
@@ -239,7 +223,7 @@ fn observe(scene: &PeriodicScene, y: &[f64], time: f64) -> std::result::Result<M
         }
         true
     })?;
-    let mut half: Vec<f64> = high.iter().zip(&low).map(|(high, low)| 0.5 * (high - low)).collect();
+    let mut half = ranges.half();
     let l = &scene.system.layout;
     let moved = l.lines.iter().flat_map(LineLayout::unknowns);
     let amplitude = moved.map(|(_, u, _)| half[u] * l.scales[u]).fold(0.0, f64::max);

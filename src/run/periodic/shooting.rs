@@ -6,6 +6,7 @@ use super::scene::PeriodicScene;
 use crate::case::schema::Case;
 use crate::dae::BeamDae;
 use crate::integrate::{StartOptions, consistent_start};
+use crate::numerics::kernels::dot;
 use crate::numerics::krylov;
 use crate::onestep::StepMap;
 use crate::onestep::step_map::{StepError, StepMapWork};
@@ -13,9 +14,9 @@ use crate::run::state_range::StateRange;
 use crate::run::stop::INTERRUPTED;
 
 /// Newton correction, over the tolerance, at which a cycle counts as found.
-pub(super) const FOUND: f64 = 0.05;
+const FOUND: f64 = 0.05;
 /// Newton correction, over the tolerance, at which the steps are chosen anew.
-pub(super) const NEAR: f64 = 10.0;
+const NEAR: f64 = 10.0;
 /// Relative residual of the linear equations.
 const LINEAR: f64 = 1e-3;
 /// Largest number of disturbances propagated in one Newton step.
@@ -106,10 +107,7 @@ pub(super) fn attempt(scene: &PeriodicScene, mut y: Vec<f64>, search: &mut Shoot
         search.newton_steps += 1;
         let correction = scene.size(&step, &y);
         if correction <= FOUND && fresh {
-            (search.correction, search.residual) = (correction, size);
-            search.steps_per_period = march.times().len() - 1;
-            search.work += march.work();
-            return finish(scene, march, y, search);
+            return finish(scene, march, y, search, [correction, size]);
         }
         if !fresh && correction <= NEAR {
             move_by(&mut y, &step, 1.0);
@@ -143,6 +141,52 @@ pub(super) fn attempt(scene: &PeriodicScene, mut y: Vec<f64>, search: &mut Shoot
     )))
 }
 
+/// Iteration with a further unknown, by full Newton steps.
+pub(super) struct FullSteps {
+    /// True once the steps of the period map are chosen anew near the cycle.
+    fresh: bool,
+    /// Last correction over the tolerance.
+    before: f64,
+}
+
+/// State of such an iteration after a correction.
+pub(super) enum Convergence {
+    /// The cycle is found.
+    Found,
+    /// The iteration diverges.
+    Lost,
+    /// The steps are to be chosen anew.
+    Near,
+    /// It goes on.
+    Far,
+}
+
+impl FullSteps {
+    pub(super) fn new() -> Self {
+        Self {
+            fresh: false,
+            before: f64::INFINITY,
+        }
+    }
+
+    /// Judges a correction over the tolerance. It ends at one that is small, or that rounding errors keep from becoming smaller.
+    pub(super) fn judge(&mut self, correction: f64) -> Convergence {
+        let stagnates = correction <= 1.0 && correction > 0.5 * self.before;
+        if self.fresh && (correction <= FOUND || stagnates) {
+            return Convergence::Found;
+        }
+        if !correction.is_finite() || correction > 4.0 * self.before {
+            return Convergence::Lost;
+        }
+        self.before = correction;
+        if self.fresh || correction > NEAR {
+            return Convergence::Far;
+        }
+        (self.fresh, self.before) = (true, f64::INFINITY);
+        Convergence::Near
+    }
+}
+
 pub(super) fn lost(how: String) -> StepError {
     StepError::new(0.0, format!("no cycle was found: {how}"))
 }
@@ -151,27 +195,28 @@ fn move_by(y: &mut [f64], step: &[f64], part: f64) {
     y.iter_mut().zip(step).for_each(|(y, step)| *y += part * step);
 }
 
-/// Simulates one period. Returns the final state minus the initial one.
+/// Simulates one period of a search. Returns the final state minus the initial one.
 fn depart(
     scene: &PeriodicScene,
     march: &mut StepMap<BeamDae>,
     y: &[f64],
     search: &mut ShootingRecord,
 ) -> Result<Vec<f64>, StepError> {
-    let (mut end, mut yp) = (y.to_vec(), vec![0.0; y.len()]);
     search.periods += 1;
-    march.go(&mut end, &mut yp, &mut |_, _, _| {})?;
-    let mut back: Vec<f64> = end.iter().zip(y).map(|(end, y)| end - y).collect();
-    scene.admit(&mut back);
-    Ok(back)
+    Ok(pass(scene, march, y)?.open)
 }
 
+/// The cycle that a search ends with; completes its record by the last correction and residual over the tolerance.
 pub(super) fn finish(
     scene: &PeriodicScene,
     march: StepMap<BeamDae>,
     mut y: Vec<f64>,
-    search: &ShootingRecord,
+    search: &mut ShootingRecord,
+    [correction, residual]: [f64; 2],
 ) -> Result<Cycle, StepError> {
+    (search.correction, search.residual) = (correction, residual);
+    search.steps_per_period = march.times().len() - 1;
+    search.work += march.work();
     let mut yp = vec![0.0; y.len()];
     let mut dae = scene.dae();
     consistent_start(&mut dae, 0.0, &mut y, &mut yp, &StartOptions::default())
@@ -181,5 +226,59 @@ pub(super) fn finish(
         yp,
         march,
         search: search.clone(),
+    })
+}
+
+/// Norm of a motion of the size of the tolerance.
+pub(super) fn smallest(scene: &PeriodicScene) -> f64 {
+    scene.rtol * (scene.guess.len() as f64).sqrt()
+}
+
+/// Ranges of all unknowns along a motion.
+pub(super) struct Ranges([Vec<f64>; 2]);
+
+impl Ranges {
+    pub(super) fn new(y: &[f64]) -> Self {
+        Self([y.to_vec(), y.to_vec()])
+    }
+
+    pub(super) fn add(&mut self, y: &[f64]) {
+        let [low, high] = &mut self.0;
+        for ((low, high), y) in low.iter_mut().zip(high).zip(y) {
+            (*low, *high) = (low.min(*y), high.max(*y));
+        }
+    }
+
+    /// Half ranges.
+    pub(super) fn half(&self) -> Vec<f64> {
+        let [low, high] = &self.0;
+        high.iter().zip(low).map(|(high, low)| 0.5 * (high - low)).collect()
+    }
+}
+
+/// One period from a state.
+pub(super) struct PeriodPass {
+    /// Final state minus the initial one.
+    pub(super) open: Vec<f64>,
+    /// Norm of half the range of every unknown.
+    pub(super) size: f64,
+    /// Rates at the end [1/s].
+    pub(super) rates: Vec<f64>,
+}
+
+/// Simulates one period.
+pub(super) fn pass(scene: &PeriodicScene, march: &mut StepMap<BeamDae>, y: &[f64]) -> Result<PeriodPass, StepError> {
+    let (mut end, mut yp) = (y.to_vec(), vec![0.0; y.len()]);
+    let mut ranges = Ranges::new(y);
+    march.go(&mut end, &mut yp, &mut |_, _, y| ranges.add(y))?;
+    let mut open: Vec<f64> = end.iter().zip(y).map(|(end, y)| end - y).collect();
+    scene.admit(&mut open);
+    let mut half = ranges.half();
+    scene.admit(&mut half);
+    scene.admit(&mut yp);
+    Ok(PeriodPass {
+        open,
+        size: dot(&half, &half).sqrt().max(smallest(scene)),
+        rates: yp,
     })
 }
