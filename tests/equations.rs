@@ -315,6 +315,7 @@ const INDEX: &[(&str, &str, &str)] = &[
         "tests/periodic/self_oscillation.rs",
         "a_limit_cycle_is_the_end_of_a_long_run",
     ),
+    ("[E100]", "tests/periodic/backbone.rs", "a_clamped_strip_hardens"),
 ];
 
 #[test]

@@ -28,7 +28,7 @@ use crate::run::summary::Status;
 use crate::study::analysis::AnalysisKind;
 use crate::study::evaluations::Evaluations;
 use crate::study::refine::{self, meshes::Meshes};
-use crate::study::stability::{PathRequest, along};
+use crate::study::stability::{PathRequest, along, backbone};
 
 /// Number of reported multipliers.
 const COUNT: usize = 6;
@@ -179,7 +179,8 @@ fn sweep(asked: &PeriodicArguments, text: &str) -> Result<ExitCode> {
     let mut folder = asked.result.place.claim(first, FolderKind::Sweep)?;
     let first = first.clone();
     let evaluations = Evaluations::default();
-    let settings = format!("{:?} {text}", asked.case.sets);
+    let resonance = asked.resonance.as_deref().unwrap_or_default();
+    let settings = format!("{:?} {text} {resonance}", asked.case.sets);
     journal::begin(&evaluations, &folder, ("periodic --sweep", &first, &settings))?;
     let stop = asked.result.wall.stop();
     let bar = progress_line::line(asked.result.quiet);
@@ -191,10 +192,14 @@ fn sweep(asked: &PeriodicArguments, text: &str) -> Result<ExitCode> {
             resources::load_varied(&asked.case.case, [&asked.case.sets, &[format!("{pointer}={value}")]], 0)
         },
     };
-    let found = along(&request, &evaluations, &stop, &|done| {
+    let report = |done: usize| {
         bar.set_message(format!("{done} of {}", counted(cases.len() as u64, "cycle")));
         bar.tick();
-    });
+    };
+    let found = match &asked.resonance {
+        Some(frequency) => backbone(&request, frequency, &evaluations, &stop, &report),
+        None => along(&request, &evaluations, &stop, &report),
+    };
     bar.finish_and_clear();
     let stopped = stop.raised();
     let found = journal::outcome(found, &folder, stopped)?;

@@ -1,5 +1,6 @@
 //! Steady cycles: shooting, stability, cycles of several periods, and their commands.
 
+mod backbone;
 mod branch;
 mod command;
 mod floquet;

@@ -14,6 +14,10 @@ pub struct PeriodicArguments {
     /// logarithms, such as /network/permeability_factor=0.01:1:25:log
     #[arg(long, value_name = "POINTER=FROM:TO:COUNT[:log]")]
     pub sweep: Option<String>,
+    /// With --sweep over an amplitude: the backbone of a resonance. At each value this frequency of the drive, a JSON pointer, is the one
+    /// at which drive and motion are a quarter period apart
+    #[arg(long, value_name = "POINTER", requires = "sweep")]
+    pub resonance: Option<String>,
     /// Look for a cycle that comes back after so many periods of what drives the case: 2 for a period that doubles
     #[arg(long, value_name = "COUNT", default_value_t = 1, value_parser = crate::cli::progress_line::count)]
     pub periods: usize,

@@ -64,6 +64,7 @@ pub fn csv(found: &CyclePath) -> String {
     let motion = "largest |tip_u1| [m],largest |tip_u3| [m],largest pressure [Pa]".split(',');
     let stability = "growth rate [1/s],multiplier real part [1],multiplier imaginary part [1],steps [1],unknowns [1],wall time [s],verdict";
     let place = "largest |u1| [m],branch [1],point,value error [as in the case]".split(',');
+    let resonance = found.resonance.as_ref().map(|_| "resonance [Hz]");
     let names = energies::columns(found);
     let rows = found.members.iter().map(|m| {
         let first = m.floquet.multipliers.first();
@@ -81,12 +82,14 @@ pub fn csv(found: &CyclePath) -> String {
         );
         row.extend([number(largest(m, Interest::LargestU1)), m.branch.to_string()]);
         row.extend([m.kind_name().into(), number(m.special.map(|s| s.value_error))]);
+        row.extend(resonance.map(|_| number(m.resonance_hz)));
         row
     });
     let headings = motion
         .chain(names.iter().map(String::as_str))
         .chain(stability.split(','))
-        .chain(place);
+        .chain(place)
+        .chain(resonance);
     records::text([parameter.as_str()].into_iter().chain(headings), rows)
 }
 
@@ -96,8 +99,9 @@ pub fn describe(found: &CyclePath) -> String {
     let energies: String = energy_headings(&harvested)
         .map(|heading| format!(" | {heading}"))
         .collect();
+    let resonance = found.resonance.as_ref().map_or("", |_| " | resonance [Hz]");
     let headings = format!(
-        " | <{} | largest |u1| [m] | largest pressure [Pa]{energies} | <verdict",
+        " | <{}{resonance} | largest |u1| [m] | largest pressure [Pa]{energies} | <verdict",
         found.pointer
     );
     let deflection = shown(found)[0];
@@ -105,9 +109,10 @@ pub fn describe(found: &CyclePath) -> String {
     let lines = listed.map(|m| {
         let number = |one| largest(m, one).map_or("–".into(), |x| significant(x, 4));
         let (tip, pressure) = (number(deflection), number(Interest::MaxPressure));
-        let numbers = vec![String::new(), significant(m.value, 4), tip, pressure];
+        let resonance = m.resonance_hz.map(|hz| significant(hz, 7));
+        let place = [String::new(), significant(m.value, 4)].into_iter().chain(resonance);
         [
-            numbers,
+            place.chain([tip, pressure]).collect(),
             energy_shown(m, &harvested),
             vec![match m.special {
                 Some(special) => special.describe(),
@@ -153,9 +158,12 @@ fn picture(found: &CyclePath) -> Option<String> {
         readable::pointer_name(&found.pointer),
         readable::pointer_unit(&found.pointer),
     );
-    let x = PictureAxis::new(name, unit, 7).logarithmic(found.logarithmic);
+    let x = match found.resonance {
+        Some(_) => PictureAxis::new("frequency at resonance", "Hz", 7),
+        None => PictureAxis::new(&name, unit, 7).logarithmic(found.logarithmic),
+    };
     let panel = |name: &str, unit: &str, value: &dyn Fn(&CycleMember) -> Option<f64>| {
-        let point = |m: &CycleMember| Some((m.value, value(m)?));
+        let point = |m: &CycleMember| Some((m.resonance_hz.unwrap_or(m.value), value(m)?));
         let points: Vec<_> = found.members.iter().map(point).collect::<Option<_>>()?;
         let of = |wanted: &dyn Fn(&CycleMember) -> bool, glyph, colour| {
             let all = points.iter().zip(&found.members).filter(|(_, m)| wanted(m));
@@ -184,7 +192,10 @@ fn picture(found: &CyclePath) -> Option<String> {
         .filter(|f| matches!(f.unit, "W" | "1"));
     let harvested = harvested.map(|f| panel(f.words, f.unit, &|m| energies::column(&energies(m), &f.name)));
     let growth = panel("growth", "1/s", &|m| Some(m.floquet.verdict.growth_per_s));
-    let about = "rings: requested values; dashed and orange: cycles that are not stable";
+    let about = match found.resonance {
+        Some(_) => &*format!("rings: values of {name}, at each the resonance; dashed and orange: not stable"),
+        None => "rings: requested values; dashed and orange: cycles that are not stable",
+    };
     let panels = quantities.chain(harvested).chain([growth]).flatten();
     Picture::stacked(format!("{} · steady cycles", found.case), about, panels).svg()
 }

@@ -151,6 +151,7 @@ pub fn sweep(place: &Place) -> Result<Page> {
         members,
         missing,
         logarithmic,
+        resonance,
         ..
     } = &found;
     let unstable = |m: &&CycleMember| m.floquet.verdict.stability == CycleStability::Unstable;
@@ -161,6 +162,7 @@ pub fn sweep(place: &Place) -> Result<Page> {
     // all cycles of one case have the same energy figures
     let figures = members.first().map_or(vec![], energies);
     let mut headings = vec![pointer.clone()];
+    headings.extend(resonance.as_ref().map(|_| "resonance [Hz]".into()));
     let quantities = shown(&found);
     let deflection = match quantities[0] {
         Interest::TipU1 => "tip u₁ [m]",
@@ -176,6 +178,7 @@ pub fn sweep(place: &Place) -> Result<Page> {
     let row = |m: &CycleMember| {
         let verdict = &m.floquet.verdict;
         let mut row = vec![json!(m.value)];
+        row.extend(m.resonance_hz.map(|hz| json!(hz)));
         row.extend(quantities.map(|one| json!(largest(m, one))));
         row.extend(energies(m).into_iter().flat_map(|f| [json!(f.value), json!(f.open)]));
         row.extend([json!(verdict.growth_per_s), json!(verdict.words), json!(m.kind_name())]);
@@ -193,14 +196,20 @@ pub fn sweep(place: &Place) -> Result<Page> {
     requested.sort_by(f64::total_cmp);
     requested.dedup();
     let values = requested.len();
+    let option = resonance
+        .as_ref()
+        .map_or(String::new(), |at| format!(" --resonance {at}"));
     page.fill(json!({
-        "label": "Steady cycles along a parameter",
+        "label": if resonance.is_some() { "Backbone of a resonance" } else { "Steady cycles along a parameter" },
         "answer": format!("{} steady cycles were found for {pointer} from {} to {}; {} of them unstable.{without}{special}",
                    members.len(), significant(low, 3), significant(high, 3), members.iter().filter(unstable).count()),
         "figures": [{
-            "title": "Along the parameter", "picture": place.picture("sweep.svg"),
-            "about": "Steady cycles for each value of the parameter, without their transients. A branch is followed through its folds; \
-                      dashed lines and orange rings are unstable cycles.",
+            "title": if resonance.is_some() { "Backbone" } else { "Along the parameter" }, "picture": place.picture("sweep.svg"),
+            "about": match resonance {
+                Some(_) => "At each value of the parameter the steady cycle at which drive and motion are a quarter period apart.",
+                None => "Steady cycles for each value of the parameter, without their transients. A branch is followed through its folds; \
+                         dashed lines and orange rings are unstable cycles.",
+            },
         }],
         "table": {
             "title": "Every cycle", "about": "Largest values within the cycle, its energies with the open part of their balance, and the growth rate of the \
@@ -208,7 +217,7 @@ pub fn sweep(place: &Place) -> Result<Page> {
             "headings": headings, "left_out": members.len().saturating_sub(MOST_ROWS),
             "rows": members.iter().take(MOST_ROWS).map(row).collect::<Vec<_>>(), "file": "sweep.csv",
         },
-        "command": format!("slcbeam periodic {CASE} --sweep {pointer}={low}:{high}:{values}{spread}"),
+        "command": format!("slcbeam periodic {CASE} --sweep {pointer}={low}:{high}:{values}{spread}{option}"),
     }));
     Ok(page)
 }

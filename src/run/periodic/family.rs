@@ -2,6 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
+use super::parameter_scale::ParameterScale;
 use super::scene::PeriodicScene;
 use super::shooting::{
     Convergence, Cycle, FullSteps, MOST_DISTURBANCES, PeriodPass, ShootingRecord, attempt, finish, lost, pass,
@@ -23,38 +24,6 @@ const BORDERED: f64 = 1e-6;
 /// Excess of the relative change of the period over that of the number above which the common period counts as another one.
 const PERIOD: f64 = 0.01;
 
-/// Values of the number over a coordinate that increases by one from each requested value to the next.
-#[derive(Clone, Copy, Debug)]
-pub struct ParameterScale {
-    /// Value at the coordinate zero.
-    pub from: f64,
-    /// Difference of neighbouring values, or of their logarithms.
-    pub step: f64,
-    /// True if the values are evenly spaced in their logarithms.
-    pub logarithmic: bool,
-}
-
-impl ParameterScale {
-    /// Scale of evenly spaced values, at least two.
-    pub fn new(values: &[f64], logarithmic: bool) -> Self {
-        let (from, to) = (values[0], values[values.len() - 1]);
-        let whole = if logarithmic { (to / from).ln() } else { to - from };
-        Self {
-            from,
-            step: whole / (values.len() - 1) as f64,
-            logarithmic,
-        }
-    }
-
-    /// Value at a coordinate.
-    pub fn value(&self, coordinate: f64) -> f64 {
-        match self.logarithmic {
-            true => self.from * (self.step * coordinate).exp(),
-            false => self.from + self.step * coordinate,
-        }
-    }
-}
-
 /// A cycle of a family and its position there.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct FamilyState {
@@ -74,6 +43,26 @@ impl FamilyState {
     /// Tangent in units of `size` for the state, of norm one; the coordinate is its last entry.
     pub fn direction(&self, size: f64) -> Vec<f64> {
         unit(&self.tangent, self.slope, size)
+    }
+
+    /// State at a distance along a direction.
+    pub fn shifted(&self, direction: &[f64], distance: f64) -> Self {
+        let (change, slope) = direction.split_at(self.y.len());
+        let moved = self.y.iter().zip(change).map(|(y, d)| y + distance * self.size * d);
+        Self {
+            y: moved.collect(),
+            coordinate: self.coordinate + distance * slope[0],
+            ..self.clone()
+        }
+    }
+
+    /// The state with the opposite tangent.
+    pub fn reversed(&self) -> Self {
+        Self {
+            tangent: self.tangent.iter().map(|x| -x).collect(),
+            slope: -self.slope,
+            ..self.clone()
+        }
     }
 }
 
@@ -189,8 +178,27 @@ impl CycleFamily<'_> {
     /// No cycle was found near the prediction.
     pub fn across(&self, predicted: &FamilyState, direction: &[f64]) -> Result<FamilyMember, StepError> {
         let n = predicted.y.len();
-        let unit_size = predicted.size;
-        let (mut y, mut coordinate) = (predicted.y.clone(), predicted.coordinate);
+        let off = |_: &PeriodicScene, y: &[f64], coordinate: f64| {
+            let along = dot(&direction[..n], y) - dot(&direction[..n], &predicted.y);
+            along / predicted.size + direction[n] * (coordinate - predicted.coordinate)
+        };
+        self.meet(predicted, direction, &off)
+    }
+
+    /// Finds the cycle of the family near a state for which `off(scene, state, coordinate)` is zero. `direction` is the derivative of
+    /// `off`, by the state in units of the size of `near`, then by the coordinate.
+    ///
+    /// # Errors
+    /// No cycle was found near the state.
+    pub(super) fn meet(
+        &self,
+        near: &FamilyState,
+        direction: &[f64],
+        off: &dyn Fn(&PeriodicScene, &[f64], f64) -> f64,
+    ) -> Result<FamilyMember, StepError> {
+        let n = near.y.len();
+        let unit_size = near.size;
+        let (mut y, mut coordinate) = (near.y.clone(), near.coordinate);
         let mut search = ShootingRecord::default();
         let (mut case, mut scene) = self.at(self.scale.value(coordinate))?;
         fill(&scene, &mut y);
@@ -199,9 +207,8 @@ impl CycleFamily<'_> {
         for _ in 0..ITERATIONS {
             let slope = self.slope(&scene, &mut march, &y, coordinate)?;
             search.periods += 2;
-            let off: f64 = dot(&direction[..n], &y) - dot(&direction[..n], &predicted.y);
-            let off = off / unit_size + direction[n] * (coordinate - predicted.coordinate);
-            let right: Vec<f64> = slope.open.iter().map(|x| x / unit_size).chain([-off]).collect();
+            let last = -off(&scene, &y, coordinate);
+            let right: Vec<f64> = slope.open.iter().map(|x| x / unit_size).chain([last]).collect();
             let border = Border {
                 by_coordinate: &slope.by_coordinate,
                 size: unit_size,
@@ -214,7 +221,7 @@ impl CycleFamily<'_> {
             let moved = value(coordinate + step[n]) - value(coordinate);
             let correction = scene
                 .size(&change, &y)
-                .max(moved.abs() / (scene.rtol * value(coordinate).abs().max(self.scale.step.abs())));
+                .max(moved.abs() / (scene.rtol * self.scale.unit(coordinate)));
             let convergence = steps.judge(correction);
             if let Convergence::Found = convergence {
                 let residual = scene.size(&slope.open, &y);

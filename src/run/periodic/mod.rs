@@ -3,8 +3,10 @@
 //! ```text
 //! scene           a case in the long run: its periodic signals, its conserved volumes, its period map
 //! fluid           amount of fluid in the conserved volumes
+//! parameter_scale values of a number of the case over a coordinate
 //! family          cycles over one number of the case, through folds
 //! shooting        Newton's iteration on the period map
+//! resonance       the cycle at which drive and motion are a quarter period apart
 //! subharmonic     cycles that return after several periods
 //! self_oscillation  a cycle without a drive; its period is an unknown
 //! record          one period of the cycle as a run
@@ -15,7 +17,9 @@
 pub mod balanced_cycle;
 pub mod family;
 mod fluid;
+pub mod parameter_scale;
 pub mod record;
+pub mod resonance;
 pub mod scene;
 pub mod self_oscillation;
 pub mod sensitivity;

@@ -163,14 +163,14 @@ impl BranchFollower<'_> {
             let slope = direction[direction.len() - 1];
             let found = match aim {
                 Aim::Value(k) => {
-                    let predicted = shifted(here, &direction, (k as f64 - here.coordinate) / slope);
+                    let predicted = here.shifted(&direction, (k as f64 - here.coordinate) / slope);
                     let value = self.values[k];
                     self.family
                         .at_value((k as f64, value), &predicted, here)
                         .map(|found| (value, found))
                 }
                 Aim::Distance(step) => {
-                    let found = self.family.across(&shifted(here, &direction, step), &direction);
+                    let found = self.family.across(&here.shifted(&direction, step), &direction);
                     found.map(|found| (self.family.scale.value(found.state.coordinate), found))
                 }
             };
@@ -364,17 +364,6 @@ fn keep(branch: &mut FollowedBranch, (value, point): (f64, PathPoint), kind: Mem
         }
     };
     (point.state, floquet)
-}
-
-/// State at a distance along a direction.
-fn shifted(from: &FamilyState, direction: &[f64], distance: f64) -> FamilyState {
-    let mut to = from.clone();
-    let (change, slope) = direction.split_at(from.y.len());
-    to.y.iter_mut()
-        .zip(change)
-        .for_each(|(y, d)| *y += distance * from.size * d);
-    to.coordinate += distance * slope[0];
-    to
 }
 
 /// State at a share of the chord between two.

@@ -11,7 +11,8 @@ use crate::error::{Code, Result};
 use crate::run::early_warnings;
 use crate::run::floquet::{self, Floquet};
 use crate::run::periodic::balanced_cycle::TighterCycle;
-use crate::run::periodic::family::{CycleFamily, FamilyMember, FamilyState, ParameterScale};
+use crate::run::periodic::family::{CycleFamily, FamilyMember, FamilyState};
+use crate::run::periodic::parameter_scale::ParameterScale;
 use crate::run::periodic::{Cycle, PeriodicScene, Settled, ShootingRecord, record, scene, settle, shoot};
 use crate::run::record::{Control, Unrecorded};
 use crate::run::stop::{INTERRUPTED, StopFlag};
@@ -48,6 +49,9 @@ pub struct CycleMember {
     /// Kind and accuracy of a special point.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub special: Option<SpecialPoint>,
+    /// Frequency of the drive at the resonance [Hz], for a backbone.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub resonance_hz: Option<f64>,
     /// Number of unknowns.
     pub unknowns: usize,
     /// Search for the cycle.
@@ -83,12 +87,46 @@ pub struct CyclePath {
     pub pointer: String,
     /// True if the values are evenly spaced in their logarithms.
     pub logarithmic: bool,
+    /// JSON pointer of the frequency that is that of the resonance at each value, for a backbone.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub resonance: Option<String>,
     /// Cycles in the order of the branches.
     pub members: Vec<CycleMember>,
     /// Values without a cycle, with reasons.
     pub missing: Vec<(f64, String)>,
     /// Warnings about the first case.
     pub warnings: Vec<String>,
+}
+
+impl CyclePath {
+    /// Path without members.
+    pub(super) fn begin(request: &PathRequest) -> Result<Self> {
+        let first = request.cases.first().map(|(_, case)| case);
+        Ok(Self {
+            case: first.map_or(String::new(), |case| case.name.clone()),
+            pointer: request.pointer.into(),
+            logarithmic: request.logarithmic,
+            resonance: None,
+            members: vec![],
+            missing: vec![],
+            warnings: match first {
+                Some(case) => early_warnings::without_outputs(case, &scene::system(case)?),
+                None => vec![],
+            },
+        })
+    }
+
+    /// Adds a warning that the energies at some values do not add up.
+    pub(super) fn warn_open(&mut self, open: &[(f64, String)]) {
+        if let Some((value, warning)) = open.first() {
+            let others = match open.len() - 1 {
+                0 => String::new(),
+                n => format!("; similar at {n} of the other values"),
+            };
+            let at = format!("(at {} = {value}{others})", self.pointer);
+            self.warnings.push(format!("{warning} {at}"));
+        }
+    }
 }
 
 /// Requested cycles along a parameter.
@@ -142,17 +180,7 @@ pub fn along(
     report: &dyn Fn(usize),
 ) -> Result<CyclePath> {
     let cases = request.cases;
-    let mut found = CyclePath {
-        case: cases.first().map_or(String::new(), |(_, case)| case.name.clone()),
-        pointer: request.pointer.into(),
-        logarithmic: request.logarithmic,
-        members: vec![],
-        missing: vec![],
-        warnings: match cases.first() {
-            Some((_, case)) => early_warnings::without_outputs(case, &scene::system(case)?),
-            None => vec![],
-        },
-    };
+    let mut found = CyclePath::begin(request)?;
     let values: Vec<f64> = cases.iter().map(|(value, _)| *value).collect();
     let mut finished = vec![false; values.len()];
     let mut before: Option<(PeriodicScene, Vec<f64>)> = None;
@@ -204,12 +232,8 @@ pub fn along(
             };
             // values before that have no cycle of their own may be on the other side of this branch
             if found.missing.iter().any(|(value, _)| values[..k].contains(value)) {
-                let back = FamilyState {
-                    tangent: state.tangent.iter().map(|x| -x).collect(),
-                    slope: -state.slope,
-                    ..state.clone()
-                };
-                let followed = follower("back from").follow((back, floquet.clone()), &mut finished, report)?;
+                let followed =
+                    follower("back from").follow((state.reversed(), floquet.clone()), &mut finished, report)?;
                 open.extend(followed.open);
                 let reached = |value: &f64| {
                     let requested = |member: &CycleMember| member.kind == MemberKind::Requested;
@@ -233,15 +257,7 @@ pub fn along(
         }
         before = Some((scene, y));
     }
-    if let Some((value, warning)) = open.first() {
-        let others = match open.len() - 1 {
-            0 => String::new(),
-            n => format!("; similar at {n} of the other values"),
-        };
-        found
-            .warnings
-            .push(format!("{warning} (at {} = {value}{others})", request.pointer));
-    }
+    found.warn_open(&open);
     Ok(found)
 }
 
@@ -304,6 +320,7 @@ fn describe((value, case, scene, cycle): (f64, Case, PeriodicScene, Cycle), begi
             kind: MemberKind::Requested,
             branch: 0,
             special: None,
+            resonance_hz: None,
             unknowns: scene.system.layout.len,
             search: cycle.search,
             floquet,

@@ -1,0 +1,100 @@
+//! Mean powers of small forced motions, from the energy balance of the equations.
+
+use nalgebra::Complex;
+
+use super::LinearResponse;
+use super::instant::NOW;
+use crate::dae::{BeamDae, Dae as _};
+use crate::discrete::ledger::{ENERGY_RATES, EnergyRate};
+use crate::functions::Signal;
+use crate::functions::signals::Polynomial;
+
+/// Largest scaled amplitude at which powers are evaluated: they are quadratic to its square, and far above rounding.
+const AMPLITUDE: f64 = 1e-4;
+
+/// Mean powers over a cycle for an input of unit amplitude [W over the squared unit of the input].
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct MeanPowers([f64; ENERGY_RATES.len()]);
+
+impl MeanPowers {
+    /// Power of one kind.
+    pub fn of(&self, rate: EnergyRate) -> f64 {
+        self.0[rate as usize]
+    }
+
+    /// Power put in by loads, ends and ports.
+    pub fn input(&self) -> f64 {
+        [EnergyRate::Loads, EnergyRate::Ends, EnergyRate::Ports]
+            .map(|rate| self.of(rate))
+            .iter()
+            .sum()
+    }
+
+    /// Input and additions less all losses: zero but for rounding errors.
+    pub fn residual(&self) -> f64 {
+        ENERGY_RATES.iter().map(|rate| rate.energy_sign() * self.of(*rate)).sum()
+    }
+}
+
+/// Evaluates mean powers about the state of a response.
+pub struct PowerMeter<'a> {
+    of: &'a LinearResponse,
+    dae: BeamDae,
+    /// Powers of the state itself.
+    at_rest: Vec<f64>,
+}
+
+impl<'a> PowerMeter<'a> {
+    /// Meter about the state of a response; `None` if energy flows there already, so that mean powers are not quadratic in the motion.
+    pub fn new(of: &'a LinearResponse) -> Option<Self> {
+        let mut dae = BeamDae::new(of.about.system().clone());
+        dae.enter_smooth_interval(NOW);
+        let mut meter = Self {
+            of,
+            at_rest: vec![],
+            dae,
+        };
+        let n = of.about.y.len();
+        let at_rest = meter.powers(&vec![Complex::new(0.0, 0.0); n], Complex::new(0.0, 0.0), 0.0, 0.0)?;
+        meter.at_rest = at_rest;
+        let flows = meter.at_rest.iter().take(EnergyRate::ImpulseX as usize).any(|power| *power != 0.0);
+        (!flows).then_some(meter)
+    }
+
+    /// Mean powers of the motion `Re(x exp(s t))`, s imaginary, of the scaled unknowns, whose input has the amplitude one. `None` if they
+    /// cannot be evaluated.
+    ///
+    /// `[E101]` A power P is quadratic in the motion; with the phases θ of four quarters its mean is
+    ///
+    /// ```text
+    /// P̄ = Σ P(ε Re(x exp(iθ)))/(4 ε²)        θ = 0, π/2, π, 3π/2
+    /// ```
+    pub fn mean(&mut self, x: &[Complex<f64>], s: Complex<f64>) -> Option<MeanPowers> {
+        let largest = x.iter().map(|x| x.norm()).fold(0.0, f64::max);
+        let size = if largest > 0.0 { AMPLITUDE / largest } else { 1.0 };
+        let mut mean = [0.0; ENERGY_RATES.len()];
+        for quarter in 0..4 {
+            let angle = f64::from(quarter) * std::f64::consts::FRAC_PI_2;
+            let powers = self.powers(x, s, size, angle)?;
+            for (mean, power) in mean.iter_mut().zip(powers) {
+                *mean += 0.25 * power / (size * size);
+            }
+        }
+        Some(MeanPowers(mean))
+    }
+
+    /// Powers at an instant of the motion of an amplitude.
+    fn powers(&mut self, x: &[Complex<f64>], s: Complex<f64>, size: f64, angle: f64) -> Option<Vec<f64>> {
+        let turn = Complex::from_polar(size, angle);
+        let of = self.of;
+        let [u, rate, second] = [turn, s * turn, s * s * turn].map(|u| u.re);
+        let coefficients = vec![of.u0 + u, rate, 0.5 * second];
+        self.dae
+            .put_signal(&of.places, &Signal::Polynomial(Polynomial { coefficients }));
+        let y: Vec<f64> = of.about.y.iter().zip(x).map(|(y, x)| y + (x * turn).re).collect();
+        let yp: Vec<f64> = x.iter().map(|x| (s * x * turn).re).collect();
+        let mut powers = vec![0.0; self.dae.integrals()];
+        self.dae.integrands(NOW, &y, &yp, &mut powers).ok()?;
+        Some(powers)
+    }
+}
