@@ -177,7 +177,7 @@ fn curve(curve: &response::OutputResponse) -> ResponseCurve {
         frequency_hz: peak.frequency_hz,
         amplitude: peak.value.norm(),
         phase_deg: peak.value.arg().to_degrees(),
-        damping_ratio: peak.damping_ratio,
+        damping_ratio: peak.damping_ratio(),
     };
     ResponseCurve {
         output: curve.output.key(),

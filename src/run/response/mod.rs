@@ -12,6 +12,7 @@
 //! of the beam are relative to it.
 
 mod instant;
+pub mod sensitivity;
 pub mod state_space;
 
 use std::collections::BTreeSet;
@@ -19,6 +20,7 @@ use std::collections::BTreeSet;
 use nalgebra::Complex;
 
 use self::instant::Instant;
+use self::sensitivity::{forced, output};
 use crate::case::schema::{Choice, Effect, Effects};
 use crate::case::{self, Case};
 use crate::discrete::System;
@@ -124,7 +126,8 @@ impl LinearResponse {
         Ok(Frequencies { of: self, factors })
     }
 
-    fn failed(&self, failure: &SpectralError) -> Error {
+    /// Error of a solution that failed.
+    pub fn failed(&self, failure: &SpectralError) -> Error {
         if *failure == SpectralError::Interrupted {
             return Error::Interrupted("interrupted before the response was computed; nothing is written".into());
         }
@@ -160,19 +163,10 @@ impl Frequencies<'_> {
         if halt::asked() {
             return Err(of.failed(&SpectralError::Interrupted));
         }
-        let [f0, f1, f2] = &of.forcing;
-        let forcing = f0
-            .iter()
-            .zip(f1)
-            .zip(f2)
-            .map(|((f0, f1), f2)| -(s * s * *f2 + s * *f1 + f0));
-        let mut x: Vec<Complex<f64>> = forcing.collect();
+        let mut x: Vec<Complex<f64>> = forced(&of.forcing, s).into_iter().map(|f| -f).collect();
         self.factors.solve(s, &mut x).map_err(|failure| of.failed(&failure))?;
-        let output = |([c, d], direct): (&[Vec<f64>; 2], &[f64; 3])| {
-            let of_state: Complex<f64> = x.iter().zip(c.iter().zip(d)).map(|(x, (c, d))| x * (s * *d + c)).sum();
-            of_state + s * s * direct[2] + s * direct[1] + direct[0]
-        };
-        Ok(of.of_state.iter().zip(&of.direct).map(output).collect())
+        let all = of.of_state.iter().zip(&of.direct);
+        Ok(all.map(|(row, direct)| output(row, direct, s, &x)).collect())
     }
 }
 

@@ -1,6 +1,7 @@
 //! Frequency responses over a band: peaks, poles, and errors by the meshes.
 
 pub mod approximation;
+pub mod derivatives;
 pub mod reduced;
 
 use std::convert::Infallible;
@@ -8,6 +9,7 @@ use std::convert::Infallible;
 use nalgebra::Complex;
 
 use self::approximation::ApproximatedResponse;
+use self::derivatives::exact_peaks;
 use super::refine::finer_along_bladders;
 use crate::case::Case;
 use crate::error::{Error, Result};
@@ -85,8 +87,15 @@ pub struct BandPeak {
     pub frequency_hz: f64,
     /// The response there.
     pub value: Complex<f64>,
+    /// Nearest pole.
+    pub pole: Option<BandPole>,
+}
+
+impl BandPeak {
     /// Damping ratio of the nearest pole.
-    pub damping_ratio: Option<f64>,
+    pub fn damping_ratio(&self) -> Option<f64> {
+        self.pole.map(|pole| 0.0 - pole.s.re / pole.s.norm())
+    }
 }
 
 /// The response of one output.
@@ -125,6 +134,34 @@ pub struct BandResponse {
 /// # Errors
 /// A frequency that is a pole.
 pub fn respond(case: &Case, request: &Request, response: LinearResponse) -> Result<BandResponse> {
+    let mut found = respond_on_mesh(case, request, response)?;
+    for (other, factor) in meshes(case)? {
+        match request
+            .compute(&other)
+            .and_then(|response| ApproximatedResponse::new(&response, request.band, &[], OTHER))
+        {
+            Ok(other) => {
+                for (k, hz) in found.frequencies.iter().enumerate() {
+                    for (curve, other) in found.curves.iter_mut().zip(other.at(*hz)) {
+                        curve.errors[k] += factor * (curve.values[k] - other).norm();
+                    }
+                }
+            }
+            Err(interrupted @ Error::Interrupted(_)) => return Err(interrupted),
+            Err(fault) => found.unknown.push(format!("errors due to the mesh: {fault}")),
+        }
+    }
+    if found.unknown.iter().any(|why| why.starts_with("errors")) {
+        found.curves.iter_mut().for_each(|curve| curve.errors.clear());
+    }
+    Ok(found)
+}
+
+/// Computes the response of a case over a band as [`respond`], with errors by the approximation only.
+///
+/// # Errors
+/// A frequency that is a pole.
+pub fn respond_on_mesh(case: &Case, request: &Request, response: LinearResponse) -> Result<BandResponse> {
     let mut unknown = vec![];
     let found = poles(case, request.at, &response, request.band);
     let mut found = found.unwrap_or_else(|why| {
@@ -151,25 +188,7 @@ pub fn respond(case: &Case, request: &Request, response: LinearResponse) -> Resu
             values,
         });
     }
-    for (other, factor) in meshes(case)? {
-        match request
-            .compute(&other)
-            .and_then(|response| ApproximatedResponse::new(&response, request.band, &[], OTHER))
-        {
-            Ok(other) => {
-                for (k, hz) in frequencies.iter().enumerate() {
-                    for (curve, other) in curves.iter_mut().zip(other.at(*hz)) {
-                        curve.errors[k] += factor * (curve.values[k] - other).norm();
-                    }
-                }
-            }
-            Err(interrupted @ Error::Interrupted(_)) => return Err(interrupted),
-            Err(fault) => unknown.push(format!("errors due to the mesh: {fault}")),
-        }
-    }
-    if unknown.iter().any(|why| why.starts_with("errors")) {
-        curves.iter_mut().for_each(|curve| curve.errors.clear());
-    }
+    exact_peaks(&response, &mut curves)?;
     Ok(BandResponse {
         response,
         frequencies,
@@ -371,11 +390,10 @@ fn peaks(
         let nearest = poles
             .iter()
             .min_by(|a, b| (a.s.im - s).abs().total_cmp(&(b.s.im - s).abs()));
-        let damping = |pole: &BandPole| 0.0 - pole.s.re / pole.s.norm();
         all.push(BandPeak {
             frequency_hz,
             value: at(frequency_hz),
-            damping_ratio: nearest.filter(|pole| (pole.s.im - s).abs() < 0.1 * s).map(damping),
+            pole: nearest.filter(|pole| (pole.s.im - s).abs() < 0.1 * s).copied(),
         });
     }
     all
