@@ -6,14 +6,14 @@ use clap::Args;
 
 use super::arguments::{CaseArguments, ResultArguments};
 use super::{resources, terminal};
-use crate::error::numbers::{counted, error_percent};
+use crate::error::numbers::error_percent;
 use crate::error::{Code, Error, Result};
 use crate::output::kind::FolderKind;
 use crate::output::report;
 use crate::output::response as files;
 use crate::results;
 use crate::results::response::{LinearisedState, ResponseCurve, ResponsePeak, ResponsePole, ResponseRecord};
-use crate::study::response::{self, BandResponse, Request, respond};
+use crate::study::response::{self, BandResponse, Request, cautions, respond};
 
 /// `response`.
 #[derive(Debug, Args)]
@@ -28,10 +28,10 @@ pub struct ResponseArguments {
     #[arg(long, value_name = "NAME", required = true, value_delimiter = ',')]
     pub output: Vec<String>,
     /// First frequency [Hz]
-    #[arg(long, value_name = "HZ", default_value_t = 1.0, allow_negative_numbers = true, value_parser = crate::cli::progress_line::frequency)]
+    #[arg(long, value_name = "HZ", default_value_t = DEFAULT_BAND[0], allow_negative_numbers = true, value_parser = crate::cli::progress_line::frequency)]
     pub from: f64,
     /// Last frequency [Hz]
-    #[arg(long, value_name = "HZ", default_value_t = 200.0, allow_negative_numbers = true, value_parser = crate::cli::progress_line::frequency)]
+    #[arg(long, value_name = "HZ", default_value_t = DEFAULT_BAND[1], allow_negative_numbers = true, value_parser = crate::cli::progress_line::frequency)]
     pub to: f64,
     /// Frequencies at least; more are added beside poles and where the response changes
     #[arg(long, value_name = "COUNT", default_value_t = 200, value_parser = crate::cli::progress_line::count)]
@@ -47,6 +47,8 @@ pub struct ResponseArguments {
     pub json: bool,
 }
 
+/// First and last frequency [Hz] of a response if none are given.
+pub const DEFAULT_BAND: [f64; 2] = [1.0, 200.0];
 /// Median error of a response above which a warning is issued.
 const LARGE: f64 = 0.05;
 /// Largest number of frequencies.
@@ -92,18 +94,39 @@ pub fn check_band([from, to]: [f64; 2], points: usize, ordered: bool, relation: 
     Ok(())
 }
 
+/// Names without repetitions.
+pub fn each_once(names: &[String]) -> Vec<String> {
+    let mut all: Vec<String> = vec![];
+    for name in names {
+        if !all.contains(name) {
+            all.push(name.clone());
+        }
+    }
+    all
+}
+
+/// Checks frequencies of `--frequency` [Hz], and returns each once.
+pub fn each_frequency(frequencies: &[f64]) -> Result<Vec<f64>> {
+    let mut all: Vec<f64> = vec![];
+    for hz in frequencies {
+        if !(*hz > 0.0 && hz.is_finite()) {
+            return Err(Error::Usage(format!(
+                "--frequency {hz}: expected a frequency above 0 Hz"
+            )));
+        }
+        if !all.contains(hz) {
+            all.push(*hz);
+        }
+    }
+    Ok(all)
+}
+
 fn request(asked: &ResponseArguments) -> Result<Request> {
     let band = [asked.from, asked.to];
     check_band(band, asked.points, asked.from <= asked.to, "not above")?;
-    let mut outputs: Vec<String> = vec![];
-    for name in &asked.output {
-        if !outputs.contains(name) {
-            outputs.push(name.clone());
-        }
-    }
     Ok(Request {
         input: asked.input.clone(),
-        outputs,
+        outputs: each_once(&asked.output),
         at: asked.at,
         band,
         points: asked.points,
@@ -152,24 +175,6 @@ fn answer(case: &str, request: &Request, found: &BandResponse) -> Result<Respons
     let coarse: Vec<String> = answer.curves().filter_map(coarse).collect();
     answer.warnings.extend(coarse);
     Ok(answer)
-}
-
-/// Warnings of a state about which motions do not stay small.
-pub fn cautions(growing: usize, moving: bool) -> Vec<String> {
-    let mut warnings = vec![];
-    if growing > 0 {
-        warnings.push(Code::Growth.warning(format!(
-            "{} with a positive real part: small motions grow. The response is not that of a steady state",
-            counted(growing as u64, "pole")
-        )));
-    }
-    if moving {
-        warnings.push(Code::NotAtRest.warning(
-            "the state is not an equilibrium: the beam would start to move. Use --at SECONDS for the equilibrium \
-             under the loads of an instant.",
-        ));
-    }
-    warnings
 }
 
 fn curve(curve: &response::OutputResponse) -> ResponseCurve {

@@ -27,6 +27,7 @@ use crate::discrete::System;
 use crate::discrete::quantities::{Group, Observable, probes, stations};
 use crate::error::numbers::counted;
 use crate::error::{Code, Error, Result, SolverError, StopPoint};
+use crate::functions::Signal;
 use crate::integrate::halt;
 use crate::model::effects::EffectSet;
 use crate::model::{Model, ResolvedNetwork};
@@ -62,29 +63,19 @@ impl LinearResponse {
     /// # Errors
     /// [`Error::Usage`] for an input or an output that the case does not have; those of [`linearise`].
     pub fn new(case: &Case, input: &str, outputs: &[String], at: Option<f64>) -> Result<Self> {
-        System::new(case)?;
-        let (case, input) = marked(case, input)?;
-        let (case, remembers) = with_memory(case)?;
-        let mut system = System::with(&case, Model::of_modes(&case)?)?;
-        let marks = case::controls(&case);
-        let nothing = || Error::Usage(format!("--input {input}: nothing in the scene depends on it"));
-        let (.., signal) = marks
-            .iter()
-            .find(|(pointer, ..)| *pointer == input)
-            .ok_or_else(nothing)?;
-        let places = system.places_of(signal);
-        if places.is_empty() {
-            return Err(nothing());
-        }
+        let found = Endpoints::new(case, input, outputs)?;
         let mut about = match at {
-            Some(at) => at_equilibrium(&case, at)?,
-            None => linearise(&case, 0.0, None)?,
+            Some(at) => at_equilibrium(&found.case, at)?,
+            None => linearise(&found.case, 0.0, None)?,
         };
-        let columns = columns(about.system());
-        let chosen = outputs
-            .iter()
-            .map(|name| find(&columns, name))
-            .collect::<Result<Vec<usize>>>()?;
+        let Endpoints {
+            remembers,
+            input,
+            signal,
+            places,
+            outputs: (chosen, outputs),
+            ..
+        } = found;
         let value = signal.jet(about.clock()).value;
         let mut instant = Instant::new(&mut about, places, value, input.contains("/opening"));
         let forcing = instant.derivatives_of_residual();
@@ -98,7 +89,7 @@ impl LinearResponse {
             input,
             u0: value,
             z0,
-            outputs: chosen.into_iter().map(|place| columns[place].clone()).collect(),
+            outputs,
             forcing,
             of_state,
             direct,
@@ -167,6 +158,58 @@ impl Frequencies<'_> {
         self.factors.solve(s, &mut x).map_err(|failure| of.failed(&failure))?;
         let all = of.of_state.iter().zip(&of.direct);
         Ok(all.map(|(row, direct)| output(row, direct, s, &x)).collect())
+    }
+}
+
+/// Outputs of a response by their names.
+///
+/// # Errors
+/// [`Error::Usage`] for an input or an output that the case does not have.
+pub fn outputs(case: &Case, input: &str, names: &[String]) -> Result<Vec<HistoryColumn>> {
+    Endpoints::new(case, input, names).map(|found| found.outputs.1)
+}
+
+/// Input and outputs of a response, in the case that is linearized.
+struct Endpoints {
+    case: Case,
+    remembers: bool,
+    input: String,
+    signal: Signal,
+    /// Indices of the signal in the system.
+    places: Vec<usize>,
+    /// Indices of the outputs, and their columns.
+    outputs: (Vec<usize>, Vec<HistoryColumn>),
+}
+
+impl Endpoints {
+    fn new(case: &Case, input: &str, outputs: &[String]) -> Result<Self> {
+        System::new(case)?;
+        let (case, input) = marked(case, input)?;
+        let (case, remembers) = with_memory(case)?;
+        let mut system = System::with(&case, Model::of_modes(&case)?)?;
+        let marks = case::controls(&case);
+        let found = marks.iter().find(|(pointer, ..)| *pointer == input);
+        let signal = found.map(|(.., signal)| (*signal).clone());
+        let places = signal.as_ref().map_or(vec![], |signal| system.places_of(signal));
+        let Some(signal) = signal.filter(|_| !places.is_empty()) else {
+            return Err(Error::Usage(format!(
+                "--input {input}: nothing in the scene depends on it"
+            )));
+        };
+        let columns = columns(&system);
+        let chosen = outputs
+            .iter()
+            .map(|name| find(&columns, name))
+            .collect::<Result<Vec<usize>>>()?;
+        let outputs = chosen.iter().map(|&place| columns[place].clone()).collect();
+        Ok(Self {
+            remembers,
+            input,
+            signal,
+            places,
+            outputs: (chosen, outputs),
+            case,
+        })
     }
 }
 

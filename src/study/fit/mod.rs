@@ -348,7 +348,7 @@ fn of_the_model(problem: &FitProblem, case: &Case, stop: &(dyn Fn() -> bool + Sy
         return vec![];
     }
     let ask = AnalysisRequest {
-        what: problem.through().command(),
+        what: &problem.through().command(),
         accuracy: None,
         from: None,
         meshes: true,

@@ -188,7 +188,7 @@ fn computed(
 ) -> std::result::Result<Vec<f64>, String> {
     let case = problem.with(values).map_err(|error| why(&error))?;
     let ask = AnalysisRequest {
-        what: problem.what,
+        what: &problem.what,
         accuracy: None,
         from: None,
         meshes: false,

@@ -1,23 +1,18 @@
-//! Exact peaks of a response, and derivatives of peaks and of the response at frequencies by numbers of the case.
+//! Derivatives of peaks, and of a response at frequencies, by numbers of the case.
 
 use std::f64::consts::TAU;
 
 use nalgebra::Complex;
 
-use super::{BandPeak, BandPole, BandResponse, OutputResponse};
+use super::peaks::Stationary;
+use super::{BandPole, BandResponse};
 use crate::case::Case;
 use crate::case::parameter::Parameter;
-use crate::error::{Error, Result};
+use crate::error::Result;
 use crate::run::response::LinearResponse;
 use crate::run::response::sensitivity::{EquationSlopes, ResponseJet};
 use crate::spectral::{self, EigenvalueOptions};
 use crate::study::in_halves;
-
-/// Largest number of Newton steps to a peak.
-const STEPS: usize = 8;
-/// Relative step at which a peak is found, and the largest accepted distance from the peak of the approximation.
-const FOUND: f64 = 1e-13;
-const NEAR: f64 = 0.02;
 
 /// Derivatives of a peak by a number of the case, per unit of the number.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -39,72 +34,6 @@ pub struct ResponseSensitivity {
     pub peaks: Vec<Vec<PeakSlopes>>,
     /// Derivatives of the transfer function of each output at each frequency.
     pub values: Vec<Vec<Complex<f64>>>,
-}
-
-/// Moves peaks of an approximation to the maxima of exact solutions, by Newton's method. Undamped peaks stay.
-///
-/// # Errors
-/// The computation was interrupted.
-pub(super) fn exact_peaks(response: &LinearResponse, curves: &mut [OutputResponse]) -> Result<()> {
-    let all = curves.iter().enumerate();
-    let places: Vec<(usize, f64)> = all
-        .flat_map(|(place, curve)| curve.peaks.iter().map(move |peak| (place, peak.frequency_hz)))
-        .collect();
-    let found = in_halves(&places, |part| {
-        let mut solver = response.solver()?;
-        let mut one = |(place, hz): &(usize, f64)| {
-            let mut at = *hz;
-            for _ in 0..STEPS {
-                let jet = match solver.jets(at, &[]) {
-                    Ok(mut jets) => jets.swap_remove(*place),
-                    Err(interrupted @ Error::Interrupted(_)) => return Err(interrupted),
-                    Err(_) => return Ok(None),
-                };
-                let Some(peak) = Stationary::of(&jet) else {
-                    return Ok(None);
-                };
-                let step = -peak.slope / peak.curvature / TAU;
-                if step.abs() <= FOUND * at {
-                    return Ok(Some((at, jet.value)));
-                }
-                at += step;
-                if (at - hz).abs() > NEAR * hz {
-                    return Ok(None);
-                }
-            }
-            Ok(solver.at(at)?.get(*place).map(|value| (at, *value)))
-        };
-        part.iter().map(&mut one).collect()
-    })?;
-    let peaks = curves.iter_mut().flat_map(|curve| &mut curve.peaks);
-    for (peak, found) in peaks.zip(found) {
-        if let Some((frequency_hz, value)) = found {
-            *peak = BandPeak {
-                frequency_hz,
-                value,
-                ..*peak
-            };
-        }
-    }
-    Ok(())
-}
-
-/// First two derivatives of `|H|²/2` by ω near a maximum.
-struct Stationary {
-    slope: f64,
-    curvature: f64,
-}
-
-impl Stationary {
-    /// None if the curvature is not that of a maximum.
-    fn of(jet: &ResponseJet) -> Option<Self> {
-        let conjugate = jet.value.conj();
-        let found = Self {
-            slope: -(conjugate * jet.rate).im,
-            curvature: jet.rate.norm_sqr() - (conjugate * jet.curvature).re,
-        };
-        (found.curvature < 0.0).then_some(found)
-    }
 }
 
 /// `[E98]` Derivatives by numbers p of the case: of peaks, and of the transfer functions at `frequencies` [Hz]. A peak ω of the

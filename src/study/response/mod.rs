@@ -2,18 +2,18 @@
 
 pub mod approximation;
 pub mod derivatives;
+mod peaks;
 pub mod reduced;
-
-use std::convert::Infallible;
 
 use nalgebra::Complex;
 
 use self::approximation::ApproximatedResponse;
-use self::derivatives::exact_peaks;
+pub use self::peaks::BandPeak;
+use self::peaks::{exact_peaks, peaks};
 use super::refine::finer_along_bladders;
 use crate::case::Case;
-use crate::error::{Error, Result};
-use crate::numerics::golden_section;
+use crate::error::numbers::counted;
+use crate::error::{Code, Error, Result};
 use crate::run::modes;
 use crate::run::record::HistoryColumn;
 use crate::run::response::LinearResponse;
@@ -32,12 +32,6 @@ const CHANGE: f64 = 0.1;
 /// Part of the distance of the samples of the grid in which at most one is added, and largest number of samples with added ones.
 const NARROW: f64 = 1.0 / 32.0;
 const MOST: usize = 4000;
-/// Part of the largest amplitude below which a local maximum is a rounding error.
-const NOISE: f64 = 1e-6;
-/// Part of an amplitude by which a peak must exceed its neighbors.
-const FLAT: f64 = 1e-9;
-/// Golden-section steps of the search for a peak; each leaves 0.62 of the interval.
-const STEPS: usize = 48;
 /// Errors of the approximation, and of those on other meshes.
 const OWN: f64 = 1e-5;
 const OTHER: f64 = 1e-4;
@@ -78,24 +72,6 @@ pub struct BandPole {
     pub s: Complex<f64>,
     /// Bound of its numerical error [1/s].
     pub bound: f64,
-}
-
-/// A local maximum of the amplitude.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct BandPeak {
-    /// Frequency [Hz].
-    pub frequency_hz: f64,
-    /// The response there.
-    pub value: Complex<f64>,
-    /// Nearest pole.
-    pub pole: Option<BandPole>,
-}
-
-impl BandPeak {
-    /// Damping ratio of the nearest pole.
-    pub fn damping_ratio(&self) -> Option<f64> {
-        self.pole.map(|pole| 0.0 - pole.s.re / pole.s.norm())
-    }
 }
 
 /// The response of one output.
@@ -304,6 +280,24 @@ impl Poles {
     }
 }
 
+/// Warnings of a state about which motions do not stay small.
+pub fn cautions(growing: usize, moving: bool) -> Vec<String> {
+    let mut warnings = vec![];
+    if growing > 0 {
+        warnings.push(Code::Growth.warning(format!(
+            "{} with a positive real part: small motions grow. The response is not that of a steady state",
+            counted(growing as u64, "pole")
+        )));
+    }
+    if moving {
+        warnings.push(Code::NotAtRest.warning(
+            "the state is not an equilibrium: the beam would start to move. Use --at SECONDS for the equilibrium \
+             under the loads of an instant.",
+        ));
+    }
+    warnings
+}
+
 /// Linearization without the memory of unsteady friction.
 fn plain(case: &Case, at: Option<f64>) -> std::result::Result<modes::Linearised, String> {
     let plain = match at {
@@ -365,36 +359,4 @@ fn sample(response: &ApproximatedResponse, request: &Request, poles: &[BandPole]
         }
     }
     (frequencies, values)
-}
-
-/// Local maxima of an amplitude, each refined by golden-section search.
-fn peaks(
-    response: &ApproximatedResponse,
-    place: usize,
-    frequencies: &[f64],
-    values: &[Complex<f64>],
-    poles: &[BandPole],
-) -> Vec<BandPeak> {
-    let largest = values.iter().map(|value| value.norm()).fold(0.0, f64::max);
-    let mut all = vec![];
-    for k in 1..frequencies.len().saturating_sub(1) {
-        let [before, own, after] = [-1, 0, 1].map(|by: isize| values[k.wrapping_add_signed(by)].norm());
-        let rises = (own - before) + (own - after);
-        if !(own > before && own >= after) || own < NOISE * largest || rises < FLAT * own {
-            continue;
-        }
-        let at = |f: f64| response.at(f)[place];
-        let around = [frequencies[k - 1], frequencies[k + 1]];
-        let Ok(frequency_hz) = golden_section::maximum(around, STEPS, |f| Ok::<_, Infallible>(at(f).norm()));
-        let s = std::f64::consts::TAU * frequency_hz;
-        let nearest = poles
-            .iter()
-            .min_by(|a, b| (a.s.im - s).abs().total_cmp(&(b.s.im - s).abs()));
-        all.push(BandPeak {
-            frequency_hz,
-            value: at(frequency_hz),
-            pole: nearest.filter(|pole| (pole.s.im - s).abs() < 0.1 * s).copied(),
-        });
-    }
-    all
 }
