@@ -4,14 +4,14 @@ use nalgebra::Complex;
 use serde::{Deserialize, Serialize};
 
 use super::derivatives::{FigureSlopes, GatheredDerivatives};
-use super::{Analysis, AnalysisOutcome, AnalysisRequest, RunCase, accurate, errors};
+use super::{Analysis, AnalysisOutcome, AnalysisRequest, RunCase, accurate};
 use crate::case::Case;
 use crate::case::parameter::Parameter;
 use crate::discrete::System;
-use crate::error::{Code, Result};
+use crate::error::{Code, Error, Result};
 use crate::run::early_warnings;
 use crate::run::response;
-use crate::study::refine::{self, ReferencedNumber, RefinedNumbers, meshes};
+use crate::study::refine::{self, ReferencedNumber, RefinedNumbers};
 use crate::study::response::derivatives::{at_frequencies, differentiate};
 use crate::study::response::{self as study, BandResponse, OutputResponse, Request, respond_on_mesh};
 
@@ -80,7 +80,10 @@ impl ResponseAnalysis {
 
     fn respond(&self, case: &Case) -> Result<Figures> {
         let request = self.request();
-        let mut found = respond_on_mesh(case, &request, request.compute(case)?)?;
+        self.with_values(respond_on_mesh(case, &request, request.compute(case)?)?)
+    }
+
+    fn with_values(&self, mut found: BandResponse) -> Result<Figures> {
         found.curves.iter_mut().for_each(|curve| curve.peaks.truncate(PEAKS));
         let jets = at_frequencies(&found.response, &self.frequencies, &[])?;
         let of = |place: usize| jets.iter().map(|all| all[place].value).collect();
@@ -108,6 +111,33 @@ impl ResponseAnalysis {
         outcome.warn(&study::cautions(all.found.growing, about.moving()));
         outcome.warn(&about.range);
         Ok(outcome)
+    }
+
+    /// Adds relative errors of figures by the meshes of beam and fluid, those of [`study::respond`].
+    fn put_errors(&self, case: &Case, here: &RefinedNumbers, outcome: &mut AnalysisOutcome) -> Result<()> {
+        let mut sums: Vec<f64> = vec![0.0; here.len()];
+        for (other, factor) in study::meshes(case)? {
+            let request = self.request();
+            let there = request
+                .compute(&other)
+                .and_then(|linear| study::respond_roughly(&request, linear));
+            let there = there
+                .and_then(|found| self.with_values(found))
+                .map(|all| self.numbers(&all));
+            let there = match there {
+                Err(interrupted @ Error::Interrupted(_)) => return Err(interrupted),
+                there => there.unwrap_or_default(),
+            };
+            for ((name, own), sum) in here.iter().zip(&mut sums) {
+                let apart = there
+                    .get(name)
+                    .map_or(f64::NAN, |there| (own.value - there.value).abs());
+                *sum += factor * apart / own.counted();
+            }
+        }
+        let errors = here.keys().zip(sums);
+        errors.for_each(|(name, error)| outcome.put(format!("{name}.error"), error));
+        Ok(())
     }
 
     /// Figures whose errors by meshes are known.
@@ -141,8 +171,7 @@ impl Analysis for ResponseAnalysis {
             let all = self.respond(case)?;
             let mut outcome = self.outcome(case, &all)?;
             if ask.meshes {
-                let by_mesh = meshes::judge(case, &self.numbers(&all), &mut of)?;
-                errors(&mut outcome, &by_mesh, &str::to_owned);
+                self.put_errors(case, &self.numbers(&all), &mut outcome)?;
             }
             return Ok(outcome);
         };

@@ -151,19 +151,7 @@ pub fn respond_on_mesh(case: &Case, request: &Request, response: LinearResponse)
     let approximated = ApproximatedResponse::new(&response, request.band, &known, OWN)?;
     found.complete(&response, &approximated, request.band);
     let Poles { poles, growing, .. } = found;
-    let (frequencies, values) = sample(&approximated, request, &poles);
-    let mut curves = vec![];
-    for (place, output) in response.outputs.iter().enumerate() {
-        let values: Vec<_> = values.iter().map(|all| all[place]).collect();
-        let median = approximated.medians[place];
-        let error = |(hz, value): (&f64, &Complex<f64>)| approximated.error_at(*hz) * value.norm().max(median);
-        curves.push(OutputResponse {
-            output: output.clone(),
-            peaks: peaks(&approximated, place, &frequencies, &values, &poles),
-            errors: frequencies.iter().zip(&values).map(error).collect(),
-            values,
-        });
-    }
+    let (frequencies, mut curves) = curves(&response, &approximated, request, &poles);
     exact_peaks(&response, &mut curves)?;
     Ok(BandResponse {
         response,
@@ -176,8 +164,55 @@ pub fn respond_on_mesh(case: &Case, request: &Request, response: LinearResponse)
     })
 }
 
+/// The response of a case on another mesh for error estimates: peaks of the approximation, and its poles.
+///
+/// # Errors
+/// As [`respond`].
+pub fn respond_roughly(request: &Request, response: LinearResponse) -> Result<BandResponse> {
+    let approximated = ApproximatedResponse::new(&response, request.band, &[], OTHER)?;
+    let poles = approximated.fit.poles().into_iter();
+    let poles = poles.filter(|s| s.im > 0.0).map(|s| BandPole { s, bound: 0.0 });
+    let poles: Vec<BandPole> = poles.collect();
+    let (frequencies, curves) = curves(&response, &approximated, request, &poles);
+    Ok(BandResponse {
+        response,
+        frequencies,
+        curves,
+        poles,
+        growing: 0,
+        solved: approximated.samples.omega.len(),
+        unknown: vec![],
+    })
+}
+
+/// Frequencies [Hz] and outputs of an approximation.
+fn curves(
+    response: &LinearResponse,
+    approximated: &ApproximatedResponse,
+    request: &Request,
+    poles: &[BandPole],
+) -> (Vec<f64>, Vec<OutputResponse>) {
+    let (frequencies, all) = sample(approximated, request, poles);
+    let of = |(place, output): (usize, &HistoryColumn)| {
+        let values: Vec<_> = all.iter().map(|all| all[place]).collect();
+        let median = approximated.medians[place];
+        let error = |(hz, value): (&f64, &Complex<f64>)| approximated.error_at(*hz) * value.norm().max(median);
+        OutputResponse {
+            output: output.clone(),
+            peaks: peaks(approximated, place, &frequencies, &values, poles),
+            errors: frequencies.iter().zip(&values).map(error).collect(),
+            values,
+        }
+    };
+    let curves = response.outputs.iter().enumerate().map(of).collect();
+    (frequencies, curves)
+}
+
 /// The case on other meshes, each with the error of its own mesh over the difference to the other.
-fn meshes(case: &Case) -> Result<Vec<(Case, f64)>> {
+///
+/// # Errors
+/// As [`System::new`](crate::discrete::System::new).
+pub fn meshes(case: &Case) -> Result<Vec<(Case, f64)>> {
     let mut all = vec![];
     let mut other = case.clone();
     if case.mesh.cells_per_segment.is_multiple_of(2) {
