@@ -169,6 +169,17 @@ pub fn outputs(case: &Case, input: &str, names: &[String]) -> Result<Vec<History
     Endpoints::new(case, input, names).map(|found| found.outputs.1)
 }
 
+/// Outputs that a response of a case can have.
+///
+/// # Errors
+/// Those of [`System::new`].
+pub fn all_outputs(case: &Case) -> Result<Vec<HistoryColumn>> {
+    let (case, _) = with_memory(case.clone())?;
+    let mut all = columns(&System::with(&case, Model::of_modes(&case)?)?);
+    all.retain(is_linear);
+    Ok(all)
+}
+
 /// Input and outputs of a response, in the case that is linearized.
 struct Endpoints {
     case: Case,
@@ -266,18 +277,22 @@ fn motion(system: &System) -> Vec<Observable> {
     all
 }
 
+/// True if a column has a response of first order.
+fn is_linear(column: &HistoryColumn) -> bool {
+    // the volume through a port is an integral
+    let integral = column.name.starts_with("port_") && column.unit == "m^3";
+    !matches!(column.unit, "W" | "J") && !integral
+}
+
 /// Index of an output by its name, with or without its unit.
 fn find(columns: &[HistoryColumn], name: &str) -> Result<usize> {
-    // the volume through a port is an integral
-    let integral = |column: &HistoryColumn| column.name.starts_with("port_") && column.unit == "m^3";
-    let known = |column: &HistoryColumn| !matches!(column.unit, "W" | "J") && !integral(column);
     let place = columns
         .iter()
-        .position(|column| known(column) && (column.name == name || column.key() == name));
+        .position(|column| is_linear(column) && (column.name == name || column.key() == name));
     place.ok_or_else(|| {
         let mut keys: Vec<String> = columns
             .iter()
-            .filter(|column| known(column))
+            .filter(|column| is_linear(column))
             .map(HistoryColumn::key)
             .collect();
         keys.sort_by_key(|key| key.starts_with("bladder_"));

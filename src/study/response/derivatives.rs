@@ -55,10 +55,7 @@ pub fn differentiate(
     parameters: &[Parameter],
 ) -> Result<Vec<ResponseSensitivity>> {
     let response = &found.response;
-    let slopes = in_halves(parameters, |part| {
-        let of = |parameter: &Parameter| EquationSlopes::new(case, at, response, parameter);
-        part.iter().map(of).collect()
-    })?;
+    let slopes = equation_slopes(case, at, response, parameters)?;
     let mut all: Vec<ResponseSensitivity> = parameters
         .iter()
         .map(|parameter| ResponseSensitivity {
@@ -88,6 +85,22 @@ pub fn differentiate(
         }
     }
     Ok(all)
+}
+
+/// Derivatives of the equations of a response by each of the numbers.
+///
+/// # Errors
+/// As [`EquationSlopes::new`].
+pub fn equation_slopes(
+    case: &Case,
+    at: Option<f64>,
+    response: &LinearResponse,
+    parameters: &[Parameter],
+) -> Result<Vec<EquationSlopes>> {
+    in_halves(parameters, |part| {
+        let of = |parameter: &Parameter| EquationSlopes::new(case, at, response, parameter);
+        part.iter().map(of).collect()
+    })
 }
 
 /// Transfer functions of all outputs with derivatives at frequencies [Hz].
