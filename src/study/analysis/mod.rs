@@ -158,6 +158,16 @@ impl AnalysisKind {
         words.collect::<Vec<_>>().join(" ")
     }
 
+    /// Reason why a result has no figure of a known name, after a colon; empty if there is none.
+    pub fn absence(&self) -> String {
+        match self {
+            Self::Response(ResponseAnalysis { band: [from, to], .. }) => {
+                format!(": the amplitude has fewer peaks from {from} to {to} Hz. Widen the band (--from, --to)")
+            }
+            _ => String::new(),
+        }
+    }
+
     /// True if the command itself has the option `--accuracy`.
     pub fn has_accuracy(&self) -> bool {
         !matches!(self, Self::Bands | Self::Response(_))

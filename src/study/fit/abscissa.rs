@@ -130,6 +130,15 @@ fn of_response(case: &Case, input: &str) -> Result<Vec<Named>> {
     Ok(response::all_outputs(case)?.into_iter().flat_map(of).collect())
 }
 
+/// Name of a figure of a response: an output alone, with or without its unit, means its amplitude.
+pub fn figure_of_response(columns: &[Named], name: &str) -> String {
+    let (output, figure) = name.rsplit_once('.').unwrap_or((name, AMPLITUDE));
+    let plain = units::suffixed(output).map_or(output, |(plain, _)| plain);
+    let known = |name: &String| columns.iter().any(|(own, _)| own == name);
+    let [given, plain] = [output, plain].map(|output| format!("{output}.{figure}"));
+    if known(&plain) { plain } else { given }
+}
+
 /// Returns the instants of the rows; rejects instants after the end of the run.
 fn instants(case: &Case, table: &DataTable, asked: &FitRequest, rows: &[usize]) -> Result<Vec<f64>> {
     let column = table.time(asked.time.as_deref())?;

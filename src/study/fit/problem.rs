@@ -1,6 +1,6 @@
 //! Fit problem: a case, the numbers to be fitted, and measured values.
 
-use super::abscissa::{Abscissa, DrivenNumber, FitAnalysis, columns};
+use super::abscissa::{Abscissa, DrivenNumber, FitAnalysis, columns, figure_of_response};
 use super::robust::LossFunction;
 use crate::case::parameter::{Parameter, with};
 use crate::case::schema::{Case, Thinning};
@@ -93,8 +93,13 @@ impl FitProblem {
         let mut case = case.clone();
         case.time.history = Thinning::All;
         let names = asked.matches.iter().map(|one| one.placed(&mut case));
-        let names = names.collect::<Result<Vec<_>>>()?;
+        let mut names = names.collect::<Result<Vec<_>>>()?;
         let columns = columns(&case, asked)?;
+        if asked.through() == FitAnalysis::Response {
+            names
+                .iter_mut()
+                .for_each(|name| *name = figure_of_response(&columns, name));
+        }
         let matched = matching::resolve(table, &asked.matches, &names, &columns)?;
         for one in &matched {
             let aside = ["t", "load_factor"].contains(&one.name.as_str());

@@ -326,8 +326,8 @@ pub fn cautions(growing: usize, moving: bool) -> Vec<String> {
     }
     if moving {
         warnings.push(Code::NotAtRest.warning(
-            "the state is not an equilibrium: the beam would start to move. Use --at SECONDS for the equilibrium \
-             under the loads of an instant.",
+            "the state is not an equilibrium: the beam would start to move. Use `slcbeam response --at SECONDS`, or \
+             /start/equilibrium, for the equilibrium under the loads of an instant.",
         ));
     }
     warnings
