@@ -5,6 +5,7 @@ use serde_json::{Value, json};
 use slcbeam::case::Case;
 use slcbeam::case::parameter::{Parameter, STEPS};
 use slcbeam::run::response::sensitivity::EquationSlopes;
+use slcbeam::study::analysis::{self, AnalysisKind, AnalysisRequest, ResponseAnalysis};
 use slcbeam::study::response::derivatives::{at_frequencies, differentiate};
 use slcbeam::study::response::{BandResponse, Request, respond_on_mesh};
 
@@ -171,4 +172,61 @@ fn peaks_move_as_differences_of_the_command_say() {
         }
         assert!(peaks >= 4, "{peaks} peaks");
     }
+}
+
+/// Goal: figures of designs have the names that are known before, the errors of their meshes, and derivatives that agree with differences
+/// of the figures to 1e-6, also of a phase.
+#[test]
+fn responses_of_designs_have_names_errors_and_derivatives() {
+    let what = AnalysisKind::Response(ResponseAnalysis {
+        input: ROOT.into(),
+        outputs: vec!["tip_u1".into(), "bladder_2_pressure".into()],
+        band: [4.0, 90.0],
+        frequencies: vec![12.5, 40.0],
+    });
+    let case = checked(&wet());
+    let figures = |case: &Case, meshes: bool| {
+        let ask = AnalysisRequest {
+            what: &what,
+            accuracy: None,
+            from: None,
+            meshes,
+        };
+        analysis::found(case, ask, &|| false, &|_| unreachable!("no run is needed")).unwrap()
+    };
+    let own = figures(&case, true);
+    let names = what.analysis().names(&case).unwrap();
+    let known = |name: &str| names.iter().any(|own| own == name);
+    let pointer = "/bladders/length_m";
+    let parameter = Parameter::find(&case, pointer).unwrap();
+    let (plain, slopes) = what
+        .analysis()
+        .derivatives(&case, &[parameter.clone()], None, &|| false)
+        .unwrap();
+    let changed = STEPS.map(|(steps, weight)| {
+        let case = parameter
+            .changed(&case, parameter.value * (1.0 + 1e-3 * steps))
+            .unwrap();
+        (figures(&case, false), weight / 1e-3)
+    });
+    let mut checked = 0;
+    for (name, value) in &own.figures {
+        if let Some(of) = name.strip_suffix(".error") {
+            assert!(known(of) && (0.0..0.5).contains(value), "{name}: {value}");
+        } else if name != "stable" {
+            assert!(known(name) && plain.figure(name) == Some(*value), "{name}");
+            let slope = slopes[name][0] * parameter.value;
+            let all = changed.iter();
+            let difference: f64 = all.map(|(found, weight)| weight * found.figure(name).unwrap()).sum();
+            assert!(
+                (slope - difference).abs() < 1e-6 * value.abs().max(slope.abs()),
+                "{name}: {slope:e} for {difference:e}"
+            );
+            checked += 1;
+        }
+    }
+    assert!(
+        checked >= 3 * 3 + 2 * 4 && own.figure("stable") == Some(1.0),
+        "{checked}"
+    );
 }
