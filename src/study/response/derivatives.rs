@@ -36,7 +36,7 @@ pub struct ResponseSensitivity {
     pub values: Vec<Vec<Complex<f64>>>,
 }
 
-/// `[E98]` Derivatives by numbers p of the case: of peaks, and of the transfer functions at `frequencies` [Hz]. A peak ω of the
+/// Derivatives [E98] by numbers p of the case: of peaks, and of the transfer functions at `frequencies` [Hz]. A peak ω of the
 /// amplitude |H| moves with its partial derivatives at fixed ω:
 ///
 /// ```text
@@ -121,7 +121,7 @@ pub fn at_frequencies(
 fn peak_slopes(jet: &ResponseJet, k: usize, damping_ratio: Option<f64>) -> PeakSlopes {
     let [slope, mixed] = jet.slopes[k];
     let conjugate = jet.value.conj();
-    let found = Stationary::of(jet);
+    let found = Stationary::from_jet(jet);
     let moved = |peak: &Stationary| (slope.conj() * jet.rate + conjugate * mixed).im / peak.curvature / TAU;
     PeakSlopes {
         frequency_hz: found.as_ref().map_or(f64::NAN, moved),

@@ -94,7 +94,7 @@ pub(super) fn exact_peaks(response: &LinearResponse, curves: &mut [OutputRespons
                     Err(interrupted @ Error::Interrupted(_)) => return Err(interrupted),
                     Err(_) => return Ok(None),
                 };
-                let Some(peak) = Stationary::of(&jet) else {
+                let Some(peak) = Stationary::from_jet(&jet) else {
                     return Ok(None);
                 };
                 let step = -peak.slope / peak.curvature / TAU;
@@ -131,7 +131,7 @@ pub(super) struct Stationary {
 
 impl Stationary {
     /// None if the curvature is not that of a maximum.
-    pub fn of(jet: &ResponseJet) -> Option<Self> {
+    pub fn from_jet(jet: &ResponseJet) -> Option<Self> {
         let conjugate = jet.value.conj();
         let found = Self {
             slope: -(conjugate * jet.rate).im,
