@@ -9,6 +9,7 @@ use slcbeam::study::analysis::{self, AnalysisKind, AnalysisRequest, ResponseAnal
 use slcbeam::study::response::derivatives::{at_frequencies, differentiate};
 use slcbeam::study::response::{BandResponse, Request, respond_on_mesh};
 
+use super::cli::run;
 use super::common::{across, checked};
 
 /// Length 1 m, EI 1 N m^2, 1 kg/m, bending damped by `time` seconds, shaken at the root.
@@ -126,7 +127,7 @@ fn peaks_move_as_differences_of_the_command_say() {
         let request = request(input, &outputs, at, [4.0, 90.0]);
         let own = found(&case, &request);
         let parameter = Parameter::find(&case, pointer).unwrap();
-        let slopes = &differentiate(&case, at, &own, &frequencies, &[parameter.clone()]).unwrap()[0];
+        let slopes = &differentiate(&case, at, &own, &frequencies, std::slice::from_ref(&parameter)).unwrap()[0];
         let changed = STEPS.map(|(steps, weight)| {
             let case = parameter
                 .changed(&case, parameter.value * (1.0 + 1e-3 * steps))
@@ -201,7 +202,7 @@ fn responses_of_designs_have_names_errors_and_derivatives() {
     let parameter = Parameter::find(&case, pointer).unwrap();
     let (plain, slopes) = what
         .analysis()
-        .derivatives(&case, &[parameter.clone()], None, &|| false)
+        .derivatives(&case, std::slice::from_ref(&parameter), None, &|| false)
         .unwrap();
     let changed = STEPS.map(|(steps, weight)| {
         let case = parameter
@@ -229,4 +230,84 @@ fn responses_of_designs_have_names_errors_and_derivatives() {
         checked >= 3 * 3 + 2 * 4 && own.figure("stable") == Some(1.0),
         "{checked}"
     );
+}
+
+/// Goal: the command prints and stores values and derivatives, and the spread by an uncertain number; a sweep continues with the same
+/// response only, and its script contains the response.
+#[test]
+fn responses_are_differentiated_by_the_command() {
+    let dir = tempfile::TempDir::new().unwrap();
+    let path = |name: &str| dir.path().join(name).display().to_string();
+    let case = path("case.json");
+    std::fs::write(&case, wet().to_string()).unwrap();
+    let way = [
+        "--input",
+        ROOT,
+        "--output",
+        "tip_u1",
+        "--to",
+        "60",
+        "--frequency",
+        "12.5",
+    ];
+    let young = "/beam/young_modulus_pa";
+    let out = path("out");
+    let uncertain = format!("{young}=normal:2e6:2e4");
+    let more = [
+        "--uncertain",
+        &uncertain,
+        "--samples",
+        "16",
+        "--sensitivity",
+        young,
+        "--quiet",
+        "--out",
+        &out,
+    ];
+    let (code, said, _) = run(&[&["response", &case], &way[..], &more].concat());
+    assert!(
+        code == 0 && said.contains("for 1 % of /beam/young_modulus_pa") && said.contains("12.50000"),
+        "{said}"
+    );
+    let read =
+        |name: &str| -> Value { serde_json::from_slice(&std::fs::read(format!("{out}/{name}")).unwrap()).unwrap() };
+    let found = read("response.json");
+    let slopes = &found["sensitivities"][young]["outputs"]["tip_u1_m"];
+    let number = |value: &Value| value.as_f64().unwrap_or_else(|| panic!("{value} is no number"));
+    // derivatives of amplitude and phase are those of the parts
+    let (value, slope) = (&found["at"][0], &slopes["at"][0]);
+    let [h, dh] = [value, slope].map(|one| Complex::new(number(&one["real"]), number(&one["imag"])));
+    assert!((number(&slope["amplitude"]) / number(&value["amplitude"]) / (dh / h).re - 1.0).abs() < 1e-12);
+    assert!((number(&slope["phase_deg"]).to_radians() / (dh / h).im - 1.0).abs() < 1e-12);
+    // the deviation of the frequency by that of the modulus, to first order and by samples
+    let spread = &read("uncertainty.json")["figures"]["tip_u1_m.peak_1.frequency_hz"];
+    let first = number(&slopes["peaks"][0]["frequency_hz"]).abs() * 2e4;
+    assert!(
+        (number(&spread["first_order"]["sd"]) / first - 1.0).abs() < 1e-9,
+        "{spread}"
+    );
+    assert!((number(&spread["sd"]) / first - 1.0).abs() < 0.2, "{spread}");
+    let designs = path("designs");
+    let sweep = [
+        "sweep",
+        &case,
+        "--command",
+        "response",
+        "--vary",
+        "/fluid/viscosity_pa_s=0.05,0.06",
+        "--quiet",
+        "--out",
+        &designs,
+    ];
+    assert_eq!(run(&[&sweep[..], &way].concat()).0, 0);
+    let other = ["--input", ROOT, "--output", "tip_angle"];
+    let (code, _, told) = run(&[&sweep[..], &other].concat());
+    assert!(
+        code == 2 && told.contains("response --input") && told.contains("contains another sweep"),
+        "{told}"
+    );
+    let (_, script, _) = run(&[&sweep[..], &way, &["--script", "parallel"]].concat());
+    assert!(script.contains(
+        "--command response --input /ends/root/clamped/u1_m --output tip_u1 --from 1 --to 60 --frequency 12.5"
+    ));
 }
