@@ -315,6 +315,11 @@ const INDEX: &[(&str, &str, &str)] = &[
         "tests/periodic/self_oscillation.rs",
         "a_limit_cycle_is_the_end_of_a_long_run",
     ),
+    (
+        "[E98]",
+        "tests/modes/response_derivatives.rs",
+        "peaks_move_as_differences_of_the_command_say",
+    ),
     ("[E100]", "tests/periodic/backbone.rs", "a_clamped_strip_hardens"),
 ];
 

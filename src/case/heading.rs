@@ -62,7 +62,12 @@ impl Heading {
         let heading = visible(&self.heading);
         let known = || {
             let names: Vec<&str> = units::of_dimension(si).map(|unit| unit.name).collect();
-            names.join(", ")
+            // a ratio of two units is no dimension of its own
+            if names.is_empty() {
+                si.to_owned()
+            } else {
+                names.join(", ")
+            }
         };
         let remedy = || {
             let first = units::of_dimension(si).map(|unit| unit.name).nth(1).unwrap_or(si);

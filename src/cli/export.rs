@@ -7,7 +7,7 @@ use std::process::ExitCode;
 use clap::{Args, ValueEnum};
 use serde_json::json;
 
-use super::response::{cautions, check_band};
+use super::response::check_band;
 use crate::case;
 use crate::error::numbers::error_percent;
 use crate::error::{Code, Error, Result};
@@ -21,7 +21,7 @@ use crate::run::record::HistoryColumn;
 use crate::run::response::LinearResponse;
 use crate::run::response::state_space::{ModelReduction, StateSpace};
 use crate::study::response::reduced::reduce;
-use crate::study::response::{growing, poles};
+use crate::study::response::{cautions, growing, poles};
 
 /// `export`.
 #[derive(Debug, Args)]

@@ -11,7 +11,8 @@ use crate::output::numbers::{counted, significant};
 use crate::output::report;
 use crate::results;
 use crate::study::data::{DataTable, Match};
-use crate::study::fit::problem::{DrivenNumber, FitProblem, FitRequest};
+use crate::study::fit::abscissa::DrivenNumber;
+use crate::study::fit::problem::{FitProblem, FitRequest};
 use crate::study::fit::{self as study, robust::LossFunction};
 use crate::study::search_bounds::ParameterBounds;
 
@@ -72,6 +73,14 @@ fn wanted(asked: &FitArguments) -> Result<FitRequest> {
             let what = "--drive: rows of a run are instants of one case; use --drive with --command equilibrium only";
             return Err(Error::Usage(what.into()));
         }
+        Some(FittedThrough::Response) if asked.input.is_none() => {
+            let what =
+                "--command response needs --input POINTER: the signal of the case over which outputs were measured";
+            return Err(Error::Usage(what.into()));
+        }
+        Some(FittedThrough::Run | FittedThrough::Equilibrium) if asked.input.is_some() => {
+            return Err(Error::Usage("--input is an option of --command response only".into()));
+        }
         _ => {}
     }
     Ok(FitRequest {
@@ -87,6 +96,7 @@ fn wanted(asked: &FitArguments) -> Result<FitRequest> {
             .collect::<Result<_>>()?,
         time: asked.time.clone(),
         drives,
+        input: asked.input.clone(),
         noise: asked.noise.iter().map(|text| noise(text)).collect::<Result<_>>()?,
         loss: asked.robust.map_or(LossFunction::Squares, LossFunction::from),
         starts: asked.starts as usize,

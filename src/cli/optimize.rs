@@ -132,7 +132,7 @@ fn apart(one: &Alternative, wanted: &OptimizationRequest) -> Result<()> {
 fn wanted(asked: &OptimizeArguments) -> Result<OptimizationRequest> {
     let figure = asked.maximize.as_ref().or(asked.minimize.as_ref());
     Ok(OptimizationRequest {
-        what: asked.command.into(),
+        what: asked.analysis.analysis()?,
         spans: asked
             .vary
             .iter()

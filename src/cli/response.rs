@@ -4,16 +4,25 @@ use std::process::ExitCode;
 
 use clap::Args;
 
-use super::arguments::{CaseArguments, ResultArguments};
+use super::arguments::{CaseArguments, ResultArguments, UncertainArguments};
+use super::uncertain::{self, Uncertain};
 use super::{resources, terminal};
-use crate::error::numbers::{counted, error_percent};
+use crate::case::parameter::Parameter;
+use crate::case::{Case, inherited};
+use crate::error::numbers::error_percent;
 use crate::error::{Code, Error, Result};
 use crate::output::kind::FolderKind;
 use crate::output::report;
 use crate::output::response as files;
 use crate::results;
-use crate::results::response::{LinearisedState, ResponseCurve, ResponsePeak, ResponsePole, ResponseRecord};
-use crate::study::response::{self, BandResponse, Request, respond};
+use crate::results::ordered::Ordered;
+use crate::results::response::{
+    LinearisedState, OutputDerivatives, PeakDerivatives, ResponseCurve, ResponseDerivatives, ResponsePeak,
+    ResponsePole, ResponseRecord, ResponseValue, ValueDerivatives,
+};
+use crate::study::analysis::{AnalysisKind, ResponseAnalysis};
+use crate::study::response::derivatives::{ResponseSensitivity, at_frequencies, differentiate};
+use crate::study::response::{self, BandResponse, Request, cautions, respond};
 
 /// `response`.
 #[derive(Debug, Args)]
@@ -28,10 +37,10 @@ pub struct ResponseArguments {
     #[arg(long, value_name = "NAME", required = true, value_delimiter = ',')]
     pub output: Vec<String>,
     /// First frequency [Hz]
-    #[arg(long, value_name = "HZ", default_value_t = 1.0, allow_negative_numbers = true, value_parser = crate::cli::progress_line::frequency)]
+    #[arg(long, value_name = "HZ", default_value_t = DEFAULT_BAND[0], allow_negative_numbers = true, value_parser = crate::cli::progress_line::frequency)]
     pub from: f64,
     /// Last frequency [Hz]
-    #[arg(long, value_name = "HZ", default_value_t = 200.0, allow_negative_numbers = true, value_parser = crate::cli::progress_line::frequency)]
+    #[arg(long, value_name = "HZ", default_value_t = DEFAULT_BAND[1], allow_negative_numbers = true, value_parser = crate::cli::progress_line::frequency)]
     pub to: f64,
     /// Frequencies at least; more are added beside poles and where the response changes
     #[arg(long, value_name = "COUNT", default_value_t = 200, value_parser = crate::cli::progress_line::count)]
@@ -39,6 +48,15 @@ pub struct ResponseArguments {
     /// About the equilibrium under the loads at this instant [s] [default: about the start]
     #[arg(long, value_name = "SECONDS", allow_negative_numbers = true, value_parser = crate::cli::progress_line::instant)]
     pub at: Option<f64>,
+    /// Frequency [Hz] at which the response is printed, besides the peaks; repeatable
+    #[arg(long, value_name = "HZ", value_delimiter = ',', allow_negative_numbers = true, value_parser = crate::cli::progress_line::frequency)]
+    pub frequency: Vec<f64>,
+    /// Differentiate peaks and printed values with respect to a number of the case, repeatable: its JSON pointer
+    #[arg(long, value_name = "POINTER")]
+    pub sensitivity: Vec<String>,
+    /// Uncertain numbers.
+    #[command(flatten)]
+    pub uncertain: UncertainArguments,
     /// Folder, time limit and output.
     #[command(flatten)]
     pub result: ResultArguments,
@@ -47,6 +65,8 @@ pub struct ResponseArguments {
     pub json: bool,
 }
 
+/// First and last frequency [Hz] of a response if none are given.
+pub const DEFAULT_BAND: [f64; 2] = [1.0, 200.0];
 /// Median error of a response above which a warning is issued.
 const LARGE: f64 = 0.05;
 /// Largest number of frequencies.
@@ -55,7 +75,10 @@ const MOST: usize = 100_000;
 /// Computes the response, writes the folder, prints the peaks.
 pub fn response(asked: &ResponseArguments) -> Result<ExitCode> {
     let request = request(asked)?;
+    let frequencies = each_frequency(&asked.frequency)?;
     let case = resources::load(&asked.case)?;
+    let parameters = Parameter::find_all(&case, &asked.sensitivity)?;
+    let uncertain = uncertain(asked, &request, &frequencies, &case)?;
     // an input or output that does not exist is reported before a folder is created
     let linear = request.compute(&case)?;
     let mut folder = asked.result.place.claim(&case, FolderKind::Response)?;
@@ -64,17 +87,44 @@ pub fn response(asked: &ResponseArguments) -> Result<ExitCode> {
         terminal::print_line(&format!("response of {}", case.name));
     }
     let found = respond(&case, &request, linear)?;
-    let answer = answer(&case.name, &request, &found)?;
+    let mut answer = answer(&case.name, &request, &found)?;
+    add_values(&mut answer, &case, request.at, &found, (&frequencies, &parameters))?;
+    let varied = inherited::varied(&case, asked.sensitivity.iter().map(String::as_str));
+    answer.warnings.extend(varied);
     let written = files::write(&mut folder, &answer).map(|_| ());
-    let written = written.and(report::complete(&folder, &case));
+    let uncertainty = uncertain::compute(uncertain.as_ref(), Some(&folder))?;
+    let written = written
+        .and(uncertain::write(uncertainty.as_ref(), &folder, &[]))
+        .and(report::complete(&folder, &case));
     super::print_result(
         asked.json,
         folder.dir(),
         written,
         || results::text(&answer),
-        || files::describe(&answer),
+        || files::describe(&answer) + &uncertain::below(uncertainty.as_ref()),
     )?;
     Ok(ExitCode::SUCCESS)
+}
+
+/// The request of `--uncertain`, whose figures are those of [`ResponseAnalysis`].
+fn uncertain(
+    asked: &ResponseArguments,
+    request: &Request,
+    frequencies: &[f64],
+    case: &Case,
+) -> Result<Option<Uncertain>> {
+    if !asked.uncertain.uncertain.is_empty() && (asked.at.is_some() || asked.from == asked.to) {
+        let what = "--uncertain applies to peaks about the start in a band: it cannot be combined with --at, or with one \
+                    frequency as the band";
+        return Err(Error::Usage(what.into()));
+    }
+    let what = AnalysisKind::Response(ResponseAnalysis {
+        input: request.input.clone(),
+        outputs: request.outputs.clone(),
+        band: request.band,
+        frequencies: frequencies.to_vec(),
+    });
+    Uncertain::new(&asked.uncertain, &asked.case, case, what, asked.result.quiet)
 }
 
 /// Checks first and last frequency [Hz], whose order is `ordered` if the first is `relation` the second, and the number of samples.
@@ -92,18 +142,39 @@ pub fn check_band([from, to]: [f64; 2], points: usize, ordered: bool, relation: 
     Ok(())
 }
 
+/// Names without repetitions.
+pub fn each_once(names: &[String]) -> Vec<String> {
+    let mut all: Vec<String> = vec![];
+    for name in names {
+        if !all.contains(name) {
+            all.push(name.clone());
+        }
+    }
+    all
+}
+
+/// Checks frequencies of `--frequency` [Hz], and returns each once.
+pub fn each_frequency(frequencies: &[f64]) -> Result<Vec<f64>> {
+    let mut all: Vec<f64> = vec![];
+    for hz in frequencies {
+        if !(*hz > 0.0 && hz.is_finite()) {
+            return Err(Error::Usage(format!(
+                "--frequency {hz}: expected a frequency above 0 Hz"
+            )));
+        }
+        if !all.contains(hz) {
+            all.push(*hz);
+        }
+    }
+    Ok(all)
+}
+
 fn request(asked: &ResponseArguments) -> Result<Request> {
     let band = [asked.from, asked.to];
     check_band(band, asked.points, asked.from <= asked.to, "not above")?;
-    let mut outputs: Vec<String> = vec![];
-    for name in &asked.output {
-        if !outputs.contains(name) {
-            outputs.push(name.clone());
-        }
-    }
     Ok(Request {
         input: asked.input.clone(),
-        outputs,
+        outputs: each_once(&asked.output),
         at: asked.at,
         band,
         points: asked.points,
@@ -137,6 +208,7 @@ fn answer(case: &str, request: &Request, found: &BandResponse) -> Result<Respons
         first,
         further: curves.collect(),
         poles: found.poles.iter().map(pole).collect(),
+        sensitivities: Ordered::default(),
         warnings,
     };
     let coarse = |curve: &ResponseCurve| {
@@ -154,30 +226,12 @@ fn answer(case: &str, request: &Request, found: &BandResponse) -> Result<Respons
     Ok(answer)
 }
 
-/// Warnings of a state about which motions do not stay small.
-pub fn cautions(growing: usize, moving: bool) -> Vec<String> {
-    let mut warnings = vec![];
-    if growing > 0 {
-        warnings.push(Code::Growth.warning(format!(
-            "{} with a positive real part: small motions grow. The response is not that of a steady state",
-            counted(growing as u64, "pole")
-        )));
-    }
-    if moving {
-        warnings.push(Code::NotAtRest.warning(
-            "the state is not an equilibrium: the beam would start to move. Use --at SECONDS for the equilibrium \
-             under the loads of an instant.",
-        ));
-    }
-    warnings
-}
-
 fn curve(curve: &response::OutputResponse) -> ResponseCurve {
     let peak = |peak: &response::BandPeak| ResponsePeak {
         frequency_hz: peak.frequency_hz,
         amplitude: peak.value.norm(),
         phase_deg: peak.value.arg().to_degrees(),
-        damping_ratio: peak.damping_ratio,
+        damping_ratio: peak.damping_ratio(),
     };
     ResponseCurve {
         output: curve.output.key(),
@@ -186,6 +240,7 @@ fn curve(curve: &response::OutputResponse) -> ResponseCurve {
         imag: curve.values.iter().map(|value| value.im).collect(),
         error: curve.errors.clone(),
         peaks: curve.peaks.iter().map(peak).collect(),
+        at: vec![],
     }
 }
 
@@ -196,4 +251,66 @@ fn pole(pole: &response::BandPole) -> ResponsePole {
         frequency_hz: pole.s.im / std::f64::consts::TAU,
         damping_ratio: -pole.s.re / pole.s.norm(),
     }
+}
+
+/// Adds the response at requested frequencies, and derivatives by numbers of the case.
+fn add_values(
+    answer: &mut ResponseRecord,
+    case: &Case,
+    at: Option<f64>,
+    found: &BandResponse,
+    (frequencies, parameters): (&[f64], &[Parameter]),
+) -> Result<()> {
+    let jets = at_frequencies(&found.response, frequencies, &[])?;
+    let value = |place: usize| {
+        let all = frequencies.iter().zip(&jets);
+        all.map(move |(hz, jets)| (*hz, jets[place].value)).collect::<Vec<_>>()
+    };
+    let values: Vec<_> = (0..found.curves.len()).map(value).collect();
+    let curves = std::iter::once(&mut answer.first).chain(&mut answer.further);
+    for (curve, values) in curves.zip(&values) {
+        let at = values.iter().map(|(frequency_hz, value)| ResponseValue {
+            frequency_hz: *frequency_hz,
+            real: value.re,
+            imag: value.im,
+            amplitude: value.norm(),
+            phase_deg: value.arg().to_degrees(),
+        });
+        curve.at = at.collect();
+    }
+    let slopes = differentiate(case, at, found, frequencies, parameters)?;
+    let of = |slopes: &ResponseSensitivity| {
+        let output = |(place, curve): (usize, &response::OutputResponse)| {
+            let known = |x: f64| Some(x).filter(|x| x.is_finite());
+            let peaks = slopes.peaks[place].iter().map(|peak| PeakDerivatives {
+                frequency_hz: known(peak.frequency_hz),
+                amplitude: known(peak.amplitude),
+                damping_ratio: peak.damping_ratio.and_then(known),
+            });
+            let at = slopes.values[place]
+                .iter()
+                .zip(&values[place])
+                .map(|(slope, (_, value))| {
+                    let relative = slope / value;
+                    ValueDerivatives {
+                        real: slope.re,
+                        imag: slope.im,
+                        amplitude: known(relative.re * value.norm()),
+                        phase_deg: known(relative.im.to_degrees()),
+                    }
+                });
+            let derivatives = OutputDerivatives {
+                peaks: peaks.collect(),
+                at: at.collect(),
+            };
+            (curve.output.key(), derivatives)
+        };
+        let derivatives = ResponseDerivatives {
+            value: slopes.parameter.value,
+            outputs: found.curves.iter().enumerate().map(output).collect(),
+        };
+        (slopes.parameter.pointer.clone(), derivatives)
+    };
+    answer.sensitivities = slopes.iter().map(of).collect();
+    Ok(())
 }

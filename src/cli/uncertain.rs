@@ -120,7 +120,7 @@ impl Uncertain {
     /// Figures of a case under its key, on request with the errors due to meshes; none if interrupted.
     fn found(&self, key: &impl Serialize, case: &Case, meshes: bool) -> Option<AnalysisOutcome> {
         let ask = AnalysisRequest {
-            what: self.what,
+            what: &self.what,
             accuracy: None,
             from: None,
             meshes,
@@ -204,7 +204,7 @@ impl Uncertain {
         };
         let stop = || self.stopped();
         self.evaluations.get(&"slopes", &stop, || {
-            uncertain::slopes(&means, self.what, &self.plan.pointers(), &stop, &difference)
+            uncertain::slopes(&means, &self.what, &self.plan.pointers(), &stop, &difference)
         })
     }
 }

@@ -14,7 +14,7 @@ use super::records;
 use crate::error::Result;
 use crate::error::numbers::error_percent;
 use crate::results;
-use crate::results::response::{ResponseCurve, ResponsePeak, ResponseRecord};
+use crate::results::response::{ResponseCurve, ResponseDerivatives, ResponsePeak, ResponseRecord, ResponseValue};
 
 /// One row per frequency.
 pub const CSV: &str = "response.csv";
@@ -76,6 +76,14 @@ pub fn describe(found: &ResponseRecord) -> String {
         rows,
     );
     text.push('\n');
+    let at = found
+        .curves()
+        .flat_map(|curve| curve.at.iter().map(move |value| at_row(curve, value)));
+    let at: Vec<_> = at.collect();
+    if !at.is_empty() {
+        text += &table(" | <output | frequency [Hz] | amplitude | [dB] | phase [°]", at);
+        text.push('\n');
+    }
     for curve in found.curves() {
         if let Some([median, largest]) = curve.errors(&found.frequency_hz) {
             let [median, largest] = [median, largest].map(error_percent);
@@ -87,7 +95,61 @@ pub fn describe(found: &ResponseRecord) -> String {
         }
     }
     let _ = writeln!(text, "{} found in the band", counted(found.poles.len() as u64, "pole"));
+    for (pointer, slopes) in &found.sensitivities.0 {
+        text += &derivatives(found, pointer, slopes);
+    }
     text + &warnings(&found.warnings)
+}
+
+/// Changes of peaks and values for 1 % of a number.
+fn derivatives(found: &ResponseRecord, pointer: &str, slopes: &ResponseDerivatives) -> String {
+    let mut text = format!("for 1 % of {pointer} = {}:\n", significant(slopes.value, 6));
+    let part = 0.01 * slopes.value;
+    let relative = |slope: Option<f64>, of: f64| {
+        slope.map_or_else(
+            || "unknown".into(),
+            |slope| format!("{} %", significant(100.0 * part * slope / of, 3)),
+        )
+    };
+    for (curve, (name, own)) in found.curves().zip(&slopes.outputs.0) {
+        for (peak, slope) in curve.peaks.iter().zip(&own.peaks) {
+            let damping = peak.damping_ratio.filter(|ratio| *ratio != 0.0);
+            let damping = damping.map_or(String::new(), |ratio| {
+                format!(", damping ratio {}", relative(slope.damping_ratio, ratio))
+            });
+            let _ = writeln!(
+                text,
+                "  {name} at the peak of {} Hz: frequency {}, amplitude {}{damping}",
+                significant(peak.frequency_hz, 5),
+                relative(slope.frequency_hz, peak.frequency_hz),
+                relative(slope.amplitude, peak.amplitude)
+            );
+        }
+        for (value, slope) in curve.at.iter().zip(&own.at) {
+            let phase = slope.phase_deg.map_or_else(
+                || "unknown".into(),
+                |slope| format!("{}°", significant(part * slope, 3)),
+            );
+            let _ = writeln!(
+                text,
+                "  {name} at {} Hz: amplitude {}, phase {phase}",
+                significant(value.frequency_hz, 5),
+                relative(slope.amplitude, value.amplitude)
+            );
+        }
+    }
+    text
+}
+
+fn at_row(curve: &ResponseCurve, value: &ResponseValue) -> [String; 6] {
+    [
+        String::new(),
+        curve.output.clone(),
+        significant(value.frequency_hz, 7),
+        significant(value.amplitude, 5),
+        format!("{:.2}", 20.0 * value.amplitude.log10()),
+        format!("{:.1}", value.phase_deg),
+    ]
 }
 
 fn row(curve: &ResponseCurve, peak: &ResponsePeak) -> [String; 7] {

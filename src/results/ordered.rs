@@ -23,6 +23,11 @@ impl<V> FromIterator<(String, V)> for Ordered<V> {
 }
 
 impl<V> Ordered<V> {
+    /// True if there are no values.
+    pub fn is_empty(&self) -> bool {
+        self.0.is_empty()
+    }
+
     /// The value of a name.
     pub fn named(&self, name: &str) -> Option<&V> {
         self.0.iter().find(|(own, _)| own == name).map(|(_, value)| value)

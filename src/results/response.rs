@@ -4,6 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use super::ResultFile;
 pub use super::modes::LinearisedState;
+use super::ordered::Ordered;
 
 /// A frequency response of a case.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -28,6 +29,9 @@ pub struct ResponseRecord {
     pub further: Vec<ResponseCurve>,
     /// Poles in the band, the lowest first.
     pub poles: Vec<ResponsePole>,
+    /// Derivatives of peaks and values, by JSON pointers of numbers of the case.
+    #[serde(default, skip_serializing_if = "Ordered::is_empty")]
+    pub sensitivities: Ordered<ResponseDerivatives>,
     /// Warnings.
     pub warnings: Vec<String>,
 }
@@ -57,6 +61,9 @@ pub struct ResponseCurve {
     pub error: Vec<f64>,
     /// Local maxima of the amplitude.
     pub peaks: Vec<ResponsePeak>,
+    /// Values at requested frequencies.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub at: Vec<ResponseValue>,
 }
 
 impl ResponseCurve {
@@ -91,6 +98,64 @@ pub struct ResponsePeak {
     pub phase_deg: f64,
     /// Damping ratio of the nearest pole.
     pub damping_ratio: Option<f64>,
+}
+
+/// The transfer function at a requested frequency.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct ResponseValue {
+    /// Frequency [Hz].
+    pub frequency_hz: f64,
+    /// Real part.
+    pub real: f64,
+    /// Imaginary part.
+    pub imag: f64,
+    /// Amplitude.
+    pub amplitude: f64,
+    /// Phase [deg].
+    pub phase_deg: f64,
+}
+
+/// Derivatives of a response with respect to one number of the case, per unit of the number.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct ResponseDerivatives {
+    /// Value of the number.
+    pub value: f64,
+    /// Derivatives of each output, by its key.
+    pub outputs: Ordered<OutputDerivatives>,
+}
+
+/// Derivatives of one output.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct OutputDerivatives {
+    /// Derivatives of the peaks, in their order.
+    pub peaks: Vec<PeakDerivatives>,
+    /// Derivatives of the values at requested frequencies, in their order.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub at: Vec<ValueDerivatives>,
+}
+
+/// Derivatives of a peak; null where it is no smooth maximum.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct PeakDerivatives {
+    /// Of the frequency [Hz].
+    pub frequency_hz: Option<f64>,
+    /// Of the amplitude.
+    pub amplitude: Option<f64>,
+    /// Of the damping ratio of the nearest pole.
+    pub damping_ratio: Option<f64>,
+}
+
+/// Derivatives of a value.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct ValueDerivatives {
+    /// Of the real part.
+    pub real: f64,
+    /// Of the imaginary part.
+    pub imag: f64,
+    /// Of the amplitude; null if the response is 0.
+    pub amplitude: Option<f64>,
+    /// Of the phase [deg]; null if the response is 0.
+    pub phase_deg: Option<f64>,
 }
 
 /// A pole `s`; of a conjugate pair the one with positive imaginary part.

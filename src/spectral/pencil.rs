@@ -236,17 +236,45 @@ impl<'a> Factors<'a> {
         Shifted::new(pencil, s).map(Self)
     }
 
-    /// Replaces `b` by the solution of `(A + s B) x = b`.
+    /// Replaces `b` by the solution of `(A + s B) x = b`. Successive solutions at one s share the factors.
     ///
     /// # Errors
     /// s is an eigenvalue.
     pub fn solve(&mut self, s: Complex<f64>, b: &mut [Complex<f64>]) -> Result<(), SpectralError> {
-        let at = self.0.factor(s)?;
+        self.factor(s)?;
         self.0.solve(b);
-        match at == s && b.iter().all(|x| x.is_finite()) {
+        finite(b)
+    }
+
+    /// Replaces `b` by the solution of `(A + s B)ᵀ x = b`.
+    ///
+    /// # Errors
+    /// s is an eigenvalue.
+    pub fn solve_transposed(&mut self, s: Complex<f64>, b: &mut [Complex<f64>]) -> Result<(), SpectralError> {
+        self.factor(s)?;
+        b.iter_mut().for_each(|x| *x = x.conj());
+        self.0.solve_adjoint(b);
+        b.iter_mut().for_each(|x| *x = x.conj());
+        finite(b)
+    }
+
+    fn factor(&mut self, s: Complex<f64>) -> Result<(), SpectralError> {
+        if self.0.shift != s {
+            // after an error there are no factors
+            self.0.shift = Complex::new(f64::NAN, f64::NAN);
+            self.0.shift = self.0.factor(s)?;
+        }
+        match self.0.shift == s {
             true => Ok(()),
             false => Err(SpectralError::Singular { column: 0 }),
         }
+    }
+}
+
+fn finite(solution: &[Complex<f64>]) -> Result<(), SpectralError> {
+    match solution.iter().all(|x| x.is_finite()) {
+        true => Ok(()),
+        false => Err(SpectralError::Singular { column: 0 }),
     }
 }
 

@@ -116,6 +116,7 @@ pub fn by_squares(spans: &[(&str, f64, f64)], matches: &[&str]) -> FitRequest {
             .collect(),
         time: None,
         drives: vec![],
+        input: None,
         noise: vec![],
         loss: LossFunction::Squares,
         starts: 1,

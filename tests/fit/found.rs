@@ -2,7 +2,8 @@
 
 use slcbeam::results;
 use slcbeam::results::fit::Fit;
-use slcbeam::study::fit::problem::{DrivenNumber, FitRequest};
+use slcbeam::study::fit::abscissa::DrivenNumber;
+use slcbeam::study::fit::problem::FitRequest;
 
 use crate::common::*;
 

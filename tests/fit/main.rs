@@ -11,6 +11,7 @@ mod beside;
 mod common;
 mod found;
 mod refused;
+mod responses;
 mod runs;
 mod unseen;
 mod volumes;

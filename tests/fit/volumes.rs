@@ -10,8 +10,9 @@ use slcbeam::results;
 use slcbeam::results::fit::Fit;
 use slcbeam::study::data::DataTable;
 use slcbeam::study::evaluations::JournalEvaluation;
+use slcbeam::study::fit::abscissa::DrivenNumber;
 use slcbeam::study::fit::fit;
-use slcbeam::study::fit::problem::{DrivenNumber, FitProblem, FitRequest};
+use slcbeam::study::fit::problem::{FitProblem, FitRequest};
 
 use crate::common::*;
 

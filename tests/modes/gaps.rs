@@ -17,7 +17,7 @@ fn derivatives(case: &Case, pointer: &str) -> (AnalysisOutcome, FigureSlopes) {
 
 fn figures(case: &Case, meshes: bool) -> AnalysisOutcome {
     let ask = AnalysisRequest {
-        what: AnalysisKind::Bands,
+        what: &AnalysisKind::Bands,
         accuracy: None,
         from: None,
         meshes,

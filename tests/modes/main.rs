@@ -10,6 +10,7 @@ mod left_out;
 mod physics;
 mod reduced;
 mod response;
+mod response_derivatives;
 mod selection;
 mod sizes;
 mod spectral;

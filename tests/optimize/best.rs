@@ -22,7 +22,7 @@ const POWER: &str = "harvested_power_w.mean";
 fn figure(case: &Case, what: AnalysisKind, changes: &[(&str, f64)], name: &str) -> f64 {
     let case = with(case, changes).expect("a case");
     let ask = AnalysisRequest {
-        what,
+        what: &what,
         accuracy: None,
         from: None,
         meshes: false,

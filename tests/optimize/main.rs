@@ -8,6 +8,7 @@ mod common;
 mod cycles;
 mod flat;
 mod refused;
+mod responses;
 mod rugged;
 mod stress;
 mod wirings;

@@ -171,7 +171,7 @@ def response(
 
     :param input: JSON pointer of a signal of the case.
     :param output: one or several quantities or probes.
-    :param options: ``from_=HZ``, ``to=HZ``, ``points``, ``at=SECONDS``, ..
+    :param options: ``from_=HZ``, ``to=HZ``, ``points``, ``at=SECONDS``, ``frequency=[HZ, ...]``, ``sensitivity=[POINTER, ...]``, ..
     :returns: ``response.json``; ``tables["response"]``.
 
     >>> import slcbeam
@@ -248,7 +248,8 @@ def sweep(
     :param vary: by JSON pointer a list of values, or a text such as ``"log:0.01:1:25"``, ``"uniform:LOW:HIGH"``.
     :param designs: instead of ``vary``, a table with a row per design and JSON pointers as headings: a dict of columns, a data frame or a
         CSV file.
-    :param options: ``command="run"|"periodic"|"equilibrium"|"modes"``, ``design="sobol:64"``, ``jobs``, ``lean=True``, ``accuracy``, ..
+    :param options: ``command="run"|"periodic"|"equilibrium"|"modes"|"bands"|"response"``, ``design="sobol:64"``, ``jobs``, ``lean=True``,
+        ``accuracy``, ..
     :returns: ``sweep.json``; ``tables["sweep"]`` with a row per design.
 
     >>> import slcbeam
@@ -304,7 +305,8 @@ def fit(
     :param data: a CSV file, a dict of columns, or a data frame; headings with units: ``angle_deg``.
     :param vary: bounds by JSON pointer.
     :param match: measured quantity of each column: ``{"angle_deg": "tip_angle"}``.
-    :param options: ``drive={"p_kpa": POINTER}``, ``noise={COLUMN: SIGMA}``, ``robust="huber"``, ``starts``, ``time``, ``jobs``.
+    :param options: ``drive={"p_kpa": POINTER}``, ``input=POINTER`` of a response, ``noise={COLUMN: SIGMA}``,
+        ``robust="huber"``, ``starts``, ``time``, ``jobs``.
     :returns: ``fit.json``.
     """
     return _do("fit", [case], data, out=out, progress=progress, options={"vary": _spans(vary), "match": match, **options})
@@ -327,7 +329,8 @@ def optimize(
     :param maximize: the objective, a figure with its name in the table of a sweep: ``harvested_power_w``, ``tip_u1_m.max_abs``.
     :param minimize: the objective to minimize; give either this or ``maximize``.
     :param subject_to: limits of figures: ``["max_pressure_pa<=5e4"]``.
-    :param options: ``command="run"|"periodic"|"equilibrium"|"modes"``, ``starts``, ``crossovers``, ``choose=[..]``, ``jobs``.
+    :param options: ``command="run"|"periodic"|"equilibrium"|"modes"|"bands"|"response"``, ``starts``, ``crossovers``,
+        ``choose=[..]``, ``jobs``.
     :returns: ``optimum.json``; ``tables["designs"]``; the best case is ``optimum-case.json`` in ``folder``.
     """
     asked = {"maximize": maximize, "minimize": minimize, "subject_to": [subject_to] if isinstance(subject_to, str) else list(subject_to)}

@@ -32,6 +32,8 @@ pub enum FittedThrough {
     Run,
     /// Static equilibria: rows are cases, --drive names the numbers that they set
     Equilibrium,
+    /// The frequency response of small motions about the start: rows are frequencies, --input names the signal that acts
+    Response,
 }
 
 /// `fit`.
@@ -48,7 +50,7 @@ pub struct FitArguments {
     /// A column beside a quantity of the result, repeatable, such as angle_deg=tip_angle, p_kpa="pressure@bladder 3", u_mm=u1@0.5
     #[arg(long = "match", value_name = "COLUMN=QUANTITY[@PLACE]")]
     pub matches: Vec<String>,
-    /// Analysis of the case [default: equilibrium with --drive, else run]
+    /// Analysis of the case [default: equilibrium with --drive, response with --input, else run]
     #[arg(long, value_enum)]
     pub command: Option<FittedThrough>,
     /// Column of time [default: t or time]
@@ -57,6 +59,9 @@ pub struct FitArguments {
     /// A number of the case that every row sets, repeatable, such as p_kpa=/network/chains/0/ends/0/pressure_pa
     #[arg(long, value_name = "COLUMN=POINTER")]
     pub drive: Vec<String>,
+    /// Input of a response: the JSON pointer of a signal of the case, such as /ends/root/clamped/u1_m
+    #[arg(long, value_name = "POINTER", conflicts_with_all = ["drive", "time"])]
+    pub input: Option<String>,
     /// Standard deviation of a column's noise in its own unit, repeatable [default: a column COLUMN_sd, else what the fit leaves]
     #[arg(long, value_name = "COLUMN=SIGMA")]
     pub noise: Vec<String>,

@@ -33,7 +33,7 @@ pub use optimize::OptimizeArguments;
 pub use periodic::PeriodicArguments;
 pub use run::RunArguments;
 pub use sense::SenseArguments;
-pub use sweep::{DesignCommand, MergeArguments, Script, SweepArguments};
+pub use sweep::{AnalysisArguments, MergeArguments, Script, SweepArguments};
 pub use uncertain::UncertainArguments;
 
 /// Elastic beams with fluid-filled bladders joined by slender tubes: dynamics with error control.

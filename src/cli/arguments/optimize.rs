@@ -2,7 +2,7 @@
 
 use clap::Args;
 
-use super::{CaseArguments, DesignCommand, ResultArguments};
+use super::{AnalysisArguments, CaseArguments, ResultArguments};
 
 /// `optimize`.
 #[derive(Debug, Args)]
@@ -29,9 +29,9 @@ pub struct OptimizeArguments {
     /// Limit of another figure, repeatable, such as 'max_pressure_pa<=2e4' or 'tip_u1_m>=0.01'
     #[arg(long, value_name = "QUANTITY[.FIGURE]<=VALUE")]
     pub subject_to: Vec<String>,
-    /// Analysis of every design
-    #[arg(long, value_enum, default_value_t = DesignCommand::Run)]
-    pub command: DesignCommand,
+    /// Analysis of every design.
+    #[command(flatten)]
+    pub analysis: AnalysisArguments,
     /// Searches, from the case's own numbers and from places between the bounds
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..=10_000))]
     pub starts: u32,

@@ -5,7 +5,9 @@ use std::path::PathBuf;
 use clap::{Args, ValueEnum};
 
 use super::{PlaceArguments, ResultArguments};
-use crate::study::analysis::AnalysisKind;
+use crate::cli::response::{DEFAULT_BAND, check_band, each_frequency, each_once};
+use crate::error::{Error, Result};
+use crate::study::analysis::{AnalysisKind, ResponseAnalysis};
 use crate::study::sweep::Shard;
 
 /// Commands that a design can go through.
@@ -21,17 +23,81 @@ pub enum DesignCommand {
     Modes,
     /// Gaps between the waves of repeating cells
     Bands,
+    /// Peaks and values of the frequency response from --input to --output
+    Response,
 }
 
-impl From<DesignCommand> for AnalysisKind {
-    fn from(one: DesignCommand) -> Self {
-        match one {
-            DesignCommand::Run => Self::Run,
-            DesignCommand::Periodic => Self::Periodic,
-            DesignCommand::Equilibrium => Self::Equilibrium,
-            DesignCommand::Modes => Self::Modes,
-            DesignCommand::Bands => Self::Bands,
-        }
+/// `--command` with the options of a response.
+#[derive(Clone, Debug, Args)]
+pub struct AnalysisArguments {
+    /// Analysis of every design
+    #[arg(long, value_enum, default_value_t = DesignCommand::Run)]
+    pub command: DesignCommand,
+    /// Input of --command response: the JSON pointer of a signal of the case, such as /ends/root/clamped/u1_m
+    #[arg(long, value_name = "POINTER")]
+    pub input: Option<String>,
+    /// Output of --command response: a quantity or a probe, such as tip_u1; repeatable
+    #[arg(long, value_name = "NAME", value_delimiter = ',')]
+    pub output: Vec<String>,
+    /// First frequency [Hz] of the band in which --command response finds peaks [default: 1]
+    #[arg(long, value_name = "HZ", allow_negative_numbers = true, value_parser = crate::cli::progress_line::frequency)]
+    pub from: Option<f64>,
+    /// Last frequency of this band [Hz] [default: 200]
+    #[arg(long, value_name = "HZ", allow_negative_numbers = true, value_parser = crate::cli::progress_line::frequency)]
+    pub to: Option<f64>,
+    /// Frequency [Hz] at which --command response gives amplitude and phase; repeatable
+    #[arg(long, value_name = "HZ", value_delimiter = ',', allow_negative_numbers = true, value_parser = crate::cli::progress_line::frequency)]
+    pub frequency: Vec<f64>,
+}
+
+impl AnalysisArguments {
+    /// The requested analysis.
+    ///
+    /// # Errors
+    /// [`Error::Usage`]: options of a response for another analysis, a response without input or output, or frequencies that are not
+    /// positive.
+    pub fn analysis(&self) -> Result<AnalysisKind> {
+        Ok(match self.command {
+            DesignCommand::Response => AnalysisKind::Response(self.response()?),
+            other => {
+                let given = [
+                    ("--input", self.input.is_some()),
+                    ("--output", !self.output.is_empty()),
+                    ("--from", self.from.is_some()),
+                    ("--to", self.to.is_some()),
+                    ("--frequency", !self.frequency.is_empty()),
+                ];
+                if let Some((option, _)) = given.iter().find(|(_, given)| *given) {
+                    return Err(Error::Usage(format!(
+                        "{option} is an option of --command response only"
+                    )));
+                }
+                match other {
+                    DesignCommand::Periodic => AnalysisKind::Periodic,
+                    DesignCommand::Equilibrium => AnalysisKind::Equilibrium,
+                    DesignCommand::Modes => AnalysisKind::Modes,
+                    DesignCommand::Bands => AnalysisKind::Bands,
+                    _ => AnalysisKind::Run,
+                }
+            }
+        })
+    }
+
+    fn response(&self) -> Result<ResponseAnalysis> {
+        let Some(input) = self.input.clone().filter(|_| !self.output.is_empty()) else {
+            let what = "--command response needs --input POINTER, a signal of the case such as /ends/root/clamped/u1_m, and \
+                        --output NAME, such as tip_u1";
+            return Err(Error::Usage(what.into()));
+        };
+        let [first, last] = DEFAULT_BAND;
+        let [from, to] = [self.from.unwrap_or(first), self.to.unwrap_or(last)];
+        check_band([from, to], 2, from < to, "below")?;
+        Ok(ResponseAnalysis {
+            input,
+            outputs: each_once(&self.output),
+            band: [from, to],
+            frequencies: each_frequency(&self.frequency)?,
+        })
     }
 }
 
@@ -58,9 +124,9 @@ pub struct SweepArguments {
     /// Designs from a CSV file: columns are JSON pointers, rows are designs
     #[arg(long, value_name = "FILE.csv", conflicts_with_all = ["vary", "design"])]
     pub designs: Option<PathBuf>,
-    /// Analysis of every design
-    #[arg(long, value_enum, default_value_t = DesignCommand::Run)]
-    pub command: DesignCommand,
+    /// Analysis of every design.
+    #[command(flatten)]
+    pub analysis: AnalysisArguments,
     /// Sampling of designs with drawn values: latin:N or sobol:N; grid: all combinations of values
     #[arg(long, value_name = "grid|latin:N|sobol:N", default_value = "grid")]
     pub design: String,

@@ -67,7 +67,7 @@ pub fn elsewhere(words: &[OsString], answer: &clap::Error) -> Option<Error> {
         return None;
     }
     let command = words.get(1)?.to_string_lossy();
-    let goes = "--uncertain is an option of run, equilibrium, modes, periodic and floquet";
+    let goes = "--uncertain is an option of run, equilibrium, modes, response, periodic and floquet";
     let instead = INSTEAD.iter().find(|(own, _)| *own == command);
     Some(Error::Usage(match instead {
         Some((_, instead)) => format!("{goes}, not of {command}; {instead}"),

@@ -210,13 +210,13 @@ fn compute_all(
     let plan = &source.plan;
     let stop = || interrupt::raised(flag);
     let mut ask = AnalysisRequest {
-        what: plan.command,
+        what: &plan.command,
         accuracy: plan.accuracy,
         from: None,
         meshes: plan.mesh_errors,
     };
     // searches begin with the setting of the first design, whichever designs are left
-    let searches = ask.accuracy.is_some() && ask.what == AnalysisKind::Run && !left.is_empty();
+    let searches = ask.accuracy.is_some() && *ask.what == AnalysisKind::Run && !left.is_empty();
     if searches && let Ok(case) = source.case(&source.designs.design(0)) {
         let first = analysis::run(&case, ask, &stop)
             .ok()

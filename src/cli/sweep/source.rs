@@ -73,7 +73,7 @@ impl DesignSource {
         }
         let mut plan = SweepPlan {
             case: String::new(),
-            command: asked.command.into(),
+            command: asked.analysis.analysis()?,
             cases: vec![],
             sets: asked.sets.clone(),
             axes: SweepPlan::axes_of(&designs, &specs),

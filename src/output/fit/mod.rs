@@ -13,8 +13,9 @@ use crate::error::Result;
 use crate::results;
 use crate::study::data::Matched;
 use crate::study::fit::Fitted;
+use crate::study::fit::abscissa::Abscissa;
 use crate::study::fit::comparison::DataComparison;
-use crate::study::fit::problem::{Abscissa, FitProblem};
+use crate::study::fit::problem::FitProblem;
 
 pub use text::{comparison, describe};
 
@@ -41,6 +42,7 @@ pub fn write(folder: &mut ResultFolder, problem: &FitProblem, found: &Fitted) ->
 fn beside(problem: &FitProblem) -> Vec<(String, Vec<f64>)> {
     match &problem.abscissa {
         Abscissa::Time(instants) => vec![("t [s]".into(), instants.clone())],
+        Abscissa::Frequencies(_, hz) => vec![("frequency [Hz]".into(), hz.clone())],
         Abscissa::Drives(drives) => drives
             .iter()
             .map(|(drive, values)| (drive.pointer.clone(), values.clone()))
@@ -97,6 +99,7 @@ fn drawn(problem: &FitProblem, found: &Fitted) -> Option<String> {
     let (name, xs) = aside.first()?;
     let x = match &problem.abscissa {
         Abscissa::Time(_) => PictureAxis::new("time t", "s", 8),
+        Abscissa::Frequencies(..) => PictureAxis::new("frequency", "Hz", 8),
         Abscissa::Drives(_) => PictureAxis::new(readable::pointer_name(name), readable::pointer_unit(name), 8),
     };
     let line = aside.len() == 1;

@@ -8,6 +8,18 @@ use crate::output::fit::{CSV, FITTED, PICTURE};
 use crate::output::numbers::{counted, duration, significant};
 use crate::results::fit::{Bound, Fit, FittedNumber};
 
+/// Outputs of a response, as an option.
+fn outputs(found: &Fit) -> String {
+    let mut all: Vec<&str> = vec![];
+    for column in &found.columns {
+        let output = column.quantity.split('.').next().unwrap_or_default();
+        if !all.contains(&output) {
+            all.push(output);
+        }
+    }
+    all.join(",")
+}
+
 /// Page of `fit`.
 pub fn data(place: &Place) -> Result<Page> {
     let (found, mut page) = place.begun::<Fit>(FolderKind::Fit, |found| (&found.case, &found.warnings))?;
@@ -58,7 +70,10 @@ pub fn data(place: &Place) -> Result<Page> {
             "title": "Estimates", "about": "In the unit that each key names. The last columns are the correlations of the estimates.",
             "headings": headings, "rows": found.parameters.iter().enumerate().map(row).collect::<Vec<_>>(), "file": CSV,
         },
-        "command": format!("slcbeam run {FITTED}"),
+        "command": match &found.input {
+            Some(input) => format!("slcbeam response {FITTED} --input {input} --output {}", outputs(&found)),
+            None => format!("slcbeam run {FITTED}"),
+        },
     }));
     Ok(page)
 }

@@ -9,6 +9,7 @@ use crate::output::optimum::{BEST, CSV, PICTURE, place as position, ranked};
 use crate::output::sweep::text::several;
 use crate::output::sweep::unit;
 use crate::results::optimum::{DerivativeSource, Optimum, Variable};
+use crate::study::sweep::plan::quoted;
 
 /// Page of `optimize`.
 pub fn data(place: &Place) -> Result<Page> {
@@ -75,9 +76,15 @@ pub fn data(place: &Place) -> Result<Page> {
             "headings": ["number, limit or alternative", "at the best", "at first", "from", "to", "1 % worse below", "1 % worse above", "gain per unit"],
             "rows": numbers.chain(limits).chain(alternatives).collect::<Vec<_>>(), "file": CSV,
         },
-        "command": format!("slcbeam {command} {BEST}"),
+        "command": format!("slcbeam {command} {BEST}{}", options(&found)),
     }));
     Ok(page)
+}
+
+/// Options of the command, each after a blank.
+fn options(found: &Optimum) -> String {
+    let options = found.command.options();
+    options.iter().map(|word| format!(" {}", quoted(word))).collect()
 }
 
 /// Unit of a figure in brackets; empty if dimensionless.

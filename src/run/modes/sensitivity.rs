@@ -59,13 +59,8 @@ pub fn differentiate(
                 Some(at) => at_equilibrium(&case, at)?,
                 None => linearise(&case, about.at, None)?,
             };
-            if changed.dae.pattern() != about.dae.pattern() {
-                let what = "a small change of it changes the unknowns or the sparsity pattern";
-                return Err(Error::Usage(format!("--sensitivity {}: {what}", parameter.pointer)));
-            }
             let weight = weight / (step * parameter.value);
-            add(&mut a, weight, about, &changed, &changed.a);
-            add(&mut b, weight, about, &changed, &changed.b);
+            add([&mut a, &mut b], weight, about, &changed, parameter)?;
         }
         let s = pairs
             .iter()
@@ -79,15 +74,31 @@ pub fn differentiate(
     parameters.iter().map(of).collect()
 }
 
-/// Adds the entries of a changed pencil, in the scales of the unchanged one.
-fn add(sum: &mut [f64], weight: f64, about: &Linearised, changed: &Linearised, entries: &[f64]) {
-    let (here, there) = (&about.system().layout, &changed.system().layout);
+/// Adds the entries of a changed pencil, in the scales of the unchanged one, to those of A and B.
+///
+/// # Errors
+/// The changed pencil has other unknowns or another pattern.
+pub fn add(
+    sums: [&mut [f64]; 2],
+    weight: f64,
+    about: &Linearised,
+    changed: &Linearised,
+    parameter: &Parameter,
+) -> Result<()> {
     let pattern = about.dae.pattern();
-    for column in 0..pattern.columns() {
-        let of_column = here.scales[column] / there.scales[column];
-        for entry in pattern.column(column) {
-            let row = pattern.rows[entry] as usize;
-            sum[entry] += weight * entries[entry] * of_column * there.row_scales[row] / here.row_scales[row];
+    if changed.dae.pattern() != pattern {
+        let what = "a small change of it changes the unknowns or the sparsity pattern";
+        return Err(Error::Usage(format!("--sensitivity {}: {what}", parameter.pointer)));
+    }
+    let (here, there) = (&about.system().layout, &changed.system().layout);
+    for (sum, entries) in sums.into_iter().zip([&changed.a, &changed.b]) {
+        for column in 0..pattern.columns() {
+            let of_column = here.scales[column] / there.scales[column];
+            for entry in pattern.column(column) {
+                let row = pattern.rows[entry] as usize;
+                sum[entry] += weight * entries[entry] * of_column * there.row_scales[row] / here.row_scales[row];
+            }
         }
     }
+    Ok(())
 }

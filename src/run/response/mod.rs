@@ -12,6 +12,7 @@
 //! of the beam are relative to it.
 
 mod instant;
+pub mod sensitivity;
 pub mod state_space;
 
 use std::collections::BTreeSet;
@@ -19,12 +20,14 @@ use std::collections::BTreeSet;
 use nalgebra::Complex;
 
 use self::instant::Instant;
+use self::sensitivity::{forced, output};
 use crate::case::schema::{Choice, Effect, Effects};
 use crate::case::{self, Case};
 use crate::discrete::System;
 use crate::discrete::quantities::{Group, Observable, probes, stations};
 use crate::error::numbers::counted;
 use crate::error::{Code, Error, Result, SolverError, StopPoint};
+use crate::functions::Signal;
 use crate::integrate::halt;
 use crate::model::effects::EffectSet;
 use crate::model::{Model, ResolvedNetwork};
@@ -60,29 +63,19 @@ impl LinearResponse {
     /// # Errors
     /// [`Error::Usage`] for an input or an output that the case does not have; those of [`linearise`].
     pub fn new(case: &Case, input: &str, outputs: &[String], at: Option<f64>) -> Result<Self> {
-        System::new(case)?;
-        let (case, input) = marked(case, input)?;
-        let (case, remembers) = with_memory(case)?;
-        let mut system = System::with(&case, Model::of_modes(&case)?)?;
-        let marks = case::controls(&case);
-        let nothing = || Error::Usage(format!("--input {input}: nothing in the scene depends on it"));
-        let (.., signal) = marks
-            .iter()
-            .find(|(pointer, ..)| *pointer == input)
-            .ok_or_else(nothing)?;
-        let places = system.places_of(signal);
-        if places.is_empty() {
-            return Err(nothing());
-        }
+        let found = Endpoints::new(case, input, outputs)?;
         let mut about = match at {
-            Some(at) => at_equilibrium(&case, at)?,
-            None => linearise(&case, 0.0, None)?,
+            Some(at) => at_equilibrium(&found.case, at)?,
+            None => linearise(&found.case, 0.0, None)?,
         };
-        let columns = columns(about.system());
-        let chosen = outputs
-            .iter()
-            .map(|name| find(&columns, name))
-            .collect::<Result<Vec<usize>>>()?;
+        let Endpoints {
+            remembers,
+            input,
+            signal,
+            places,
+            outputs: (chosen, outputs),
+            ..
+        } = found;
         let value = signal.jet(about.clock()).value;
         let mut instant = Instant::new(&mut about, places, value, input.contains("/opening"));
         let forcing = instant.derivatives_of_residual();
@@ -96,7 +89,7 @@ impl LinearResponse {
             input,
             u0: value,
             z0,
-            outputs: chosen.into_iter().map(|place| columns[place].clone()).collect(),
+            outputs,
             forcing,
             of_state,
             direct,
@@ -124,7 +117,8 @@ impl LinearResponse {
         Ok(Frequencies { of: self, factors })
     }
 
-    fn failed(&self, failure: &SpectralError) -> Error {
+    /// Error of a solution that failed.
+    pub fn failed(&self, failure: &SpectralError) -> Error {
         if *failure == SpectralError::Interrupted {
             return Error::Interrupted("interrupted before the response was computed; nothing is written".into());
         }
@@ -160,19 +154,73 @@ impl Frequencies<'_> {
         if halt::asked() {
             return Err(of.failed(&SpectralError::Interrupted));
         }
-        let [f0, f1, f2] = &of.forcing;
-        let forcing = f0
-            .iter()
-            .zip(f1)
-            .zip(f2)
-            .map(|((f0, f1), f2)| -(s * s * *f2 + s * *f1 + f0));
-        let mut x: Vec<Complex<f64>> = forcing.collect();
+        let mut x: Vec<Complex<f64>> = forced(&of.forcing, s).into_iter().map(|f| -f).collect();
         self.factors.solve(s, &mut x).map_err(|failure| of.failed(&failure))?;
-        let output = |([c, d], direct): (&[Vec<f64>; 2], &[f64; 3])| {
-            let of_state: Complex<f64> = x.iter().zip(c.iter().zip(d)).map(|(x, (c, d))| x * (s * *d + c)).sum();
-            of_state + s * s * direct[2] + s * direct[1] + direct[0]
+        let all = of.of_state.iter().zip(&of.direct);
+        Ok(all.map(|(row, direct)| output(row, direct, s, &x)).collect())
+    }
+}
+
+/// Outputs of a response by their names.
+///
+/// # Errors
+/// [`Error::Usage`] for an input or an output that the case does not have.
+pub fn outputs(case: &Case, input: &str, names: &[String]) -> Result<Vec<HistoryColumn>> {
+    Endpoints::new(case, input, names).map(|found| found.outputs.1)
+}
+
+/// Outputs that a response of a case can have.
+///
+/// # Errors
+/// Those of [`System::new`].
+pub fn all_outputs(case: &Case) -> Result<Vec<HistoryColumn>> {
+    let (case, _) = with_memory(case.clone())?;
+    let mut all = columns(&System::with(&case, Model::of_modes(&case)?)?);
+    all.retain(is_linear);
+    Ok(all)
+}
+
+/// Input and outputs of a response, in the case that is linearized.
+struct Endpoints {
+    case: Case,
+    remembers: bool,
+    input: String,
+    signal: Signal,
+    /// Indices of the signal in the system.
+    places: Vec<usize>,
+    /// Indices of the outputs, and their columns.
+    outputs: (Vec<usize>, Vec<HistoryColumn>),
+}
+
+impl Endpoints {
+    fn new(case: &Case, input: &str, outputs: &[String]) -> Result<Self> {
+        System::new(case)?;
+        let (case, input) = marked(case, input)?;
+        let (case, remembers) = with_memory(case)?;
+        let mut system = System::with(&case, Model::of_modes(&case)?)?;
+        let marks = case::controls(&case);
+        let found = marks.iter().find(|(pointer, ..)| *pointer == input);
+        let signal = found.map(|(.., signal)| (*signal).clone());
+        let places = signal.as_ref().map_or(vec![], |signal| system.places_of(signal));
+        let Some(signal) = signal.filter(|_| !places.is_empty()) else {
+            return Err(Error::Usage(format!(
+                "--input {input}: nothing in the scene depends on it"
+            )));
         };
-        Ok(of.of_state.iter().zip(&of.direct).map(output).collect())
+        let columns = columns(&system);
+        let chosen = outputs
+            .iter()
+            .map(|name| find(&columns, name))
+            .collect::<Result<Vec<usize>>>()?;
+        let outputs = chosen.iter().map(|&place| columns[place].clone()).collect();
+        Ok(Self {
+            remembers,
+            input,
+            signal,
+            places,
+            outputs: (chosen, outputs),
+            case,
+        })
     }
 }
 
@@ -229,18 +277,22 @@ fn motion(system: &System) -> Vec<Observable> {
     all
 }
 
+/// True if a column has a response of first order.
+fn is_linear(column: &HistoryColumn) -> bool {
+    // the volume through a port is an integral
+    let integral = column.name.starts_with("port_") && column.unit == "m^3";
+    !matches!(column.unit, "W" | "J") && !integral
+}
+
 /// Index of an output by its name, with or without its unit.
 fn find(columns: &[HistoryColumn], name: &str) -> Result<usize> {
-    // the volume through a port is an integral
-    let integral = |column: &HistoryColumn| column.name.starts_with("port_") && column.unit == "m^3";
-    let known = |column: &HistoryColumn| !matches!(column.unit, "W" | "J") && !integral(column);
     let place = columns
         .iter()
-        .position(|column| known(column) && (column.name == name || column.key() == name));
+        .position(|column| is_linear(column) && (column.name == name || column.key() == name));
     place.ok_or_else(|| {
         let mut keys: Vec<String> = columns
             .iter()
-            .filter(|column| known(column))
+            .filter(|column| is_linear(column))
             .map(HistoryColumn::key)
             .collect();
         keys.sort_by_key(|key| key.starts_with("bladder_"));

@@ -7,6 +7,7 @@
 //! cycle        steady cycles                         slcbeam periodic
 //! multipliers  stability of cycles                   slcbeam floquet
 //! bands        first gaps of a repeating cell        slcbeam bands
+//! response     peaks of a frequency response         slcbeam response
 //!
 //! outcome      figures of a case, and the outcome of its computation
 //! derivatives  derivatives of figures with respect to numbers of the case
@@ -24,6 +25,7 @@ pub mod modes;
 mod multipliers;
 mod outcome;
 pub mod power;
+pub mod response;
 mod run;
 
 use std::cell::Cell;
@@ -42,6 +44,7 @@ use crate::study::refine::{self, meshes};
 use crate::study::{companion, target};
 use derivatives::FigureSlopes;
 pub use outcome::{AnalysisOutcome, word};
+pub use response::ResponseAnalysis;
 
 /// Name of the figure that is 1 if the requested accuracy is reached, otherwise 0.
 pub const ACCURACY: &str = "accuracy_reached";
@@ -85,7 +88,7 @@ pub trait Analysis: Sync {
 
     /// Computes the figures of a case and their derivatives with respect to `parameters`, where these exist. A
     /// computation that does not finish has no derivatives. A run uses the effects of the system `alike`. The
-    /// derivatives are exact for runs (IDA's sensitivities, [E41]), equilibria [E43], modes [E44] and cycles [E76];
+    /// derivatives are exact for runs (IDA's sensitivities, [E41]), equilibria [E43], modes [E44], cycles [E76] and frequency responses [E98];
     /// those of gaps are differences of fourth order.
     ///
     /// # Errors
@@ -108,7 +111,7 @@ pub trait Analysis: Sync {
 }
 
 /// An analysis by the command that runs it.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum AnalysisKind {
     /// `run`.
@@ -123,11 +126,13 @@ pub enum AnalysisKind {
     Floquet,
     /// `bands`.
     Bands,
+    /// `response`.
+    Response(ResponseAnalysis),
 }
 
 impl AnalysisKind {
     /// Name of the command.
-    pub fn word(self) -> &'static str {
+    pub fn word(&self) -> &'static str {
         match self {
             Self::Run => "run",
             Self::Periodic => "periodic",
@@ -135,11 +140,41 @@ impl AnalysisKind {
             Self::Modes => "modes",
             Self::Floquet => "floquet",
             Self::Bands => "bands",
+            Self::Response(_) => "response",
         }
     }
 
+    /// Words of the command line after the case; empty for analyses without options.
+    pub fn options(&self) -> Vec<String> {
+        match self {
+            Self::Response(response) => response.options(),
+            _ => vec![],
+        }
+    }
+
+    /// Command with its options, as on the command line.
+    pub fn describe(&self) -> String {
+        let words = std::iter::once(self.word().to_owned()).chain(self.options());
+        words.collect::<Vec<_>>().join(" ")
+    }
+
+    /// Reason why a result has no figure of a known name, after a colon; empty if there is none.
+    pub fn absence(&self) -> String {
+        match self {
+            Self::Response(ResponseAnalysis { band: [from, to], .. }) => {
+                format!(": the amplitude has fewer peaks from {from} to {to} Hz. Widen the band (--from, --to)")
+            }
+            _ => String::new(),
+        }
+    }
+
+    /// True if the command itself has the option `--accuracy`.
+    pub fn has_accuracy(&self) -> bool {
+        !matches!(self, Self::Bands | Self::Response(_))
+    }
+
     /// Returns the analysis.
-    pub fn analysis(self) -> &'static dyn Analysis {
+    pub fn analysis(&self) -> &dyn Analysis {
         match self {
             Self::Run => &run::Run,
             Self::Periodic => &cycle::Periodic,
@@ -147,15 +182,16 @@ impl AnalysisKind {
             Self::Modes => &modes::ModesAnalysis,
             Self::Floquet => &multipliers::Multipliers,
             Self::Bands => &bands::BandsAnalysis,
+            Self::Response(response) => response,
         }
     }
 }
 
 /// A request for the figures of a case.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct AnalysisRequest {
+pub struct AnalysisRequest<'a> {
     /// The analysis.
-    pub what: AnalysisKind,
+    pub what: &'a AnalysisKind,
     /// Requested relative error of every figure.
     pub accuracy: Option<f64>,
     /// Initial mesh and tolerance of the search for the accuracy.

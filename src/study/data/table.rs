@@ -181,6 +181,34 @@ impl DataTable {
         })
     }
 
+    /// Index of the column of frequency, which is named `frequency` or `f`.
+    ///
+    /// # Errors
+    /// [`Error::Usage`] if there is none.
+    pub fn frequency(&self) -> Result<usize> {
+        let called = |column: &Heading| ["f", "frequency"].contains(&column.name.to_lowercase().as_str());
+        self.columns.iter().position(called).ok_or_else(|| {
+            let headings = self.columns.iter().map(|column| column.heading.as_str());
+            Error::Usage(format!(
+                "{} has no column frequency_hz or f_hz, but only {}",
+                self.source.path.display(),
+                listed(headings)
+            ))
+        })
+    }
+
+    /// Frequencies [Hz] of its column, all above 0.
+    ///
+    /// # Errors
+    /// As [`Table::all_numbers`], with the positions of others; a unit that is not one of frequency.
+    pub fn frequencies(&self) -> Result<Vec<f64>> {
+        let column = self.frequency()?;
+        let all = self.all_numbers(column, self.scale(column, "Hz", "frequency")?)?;
+        let faults = (0..all.len()).filter(|row| all[*row] <= 0.0).take(MOST);
+        let faults = faults.map(|row| self.fault(row, column, "expected a frequency above 0"));
+        self.sound(faults.collect()).map(|()| all)
+    }
+
     /// Numbers of a column times a scale; `None` for empty cells.
     ///
     /// # Errors

@@ -2,6 +2,7 @@
 //! identifiability.
 //!
 //! ```text
+//! abscissa         rows of the data: instants, driven numbers, frequencies
 //! problem          case, numbers to be fitted, measured values; rejects inconsistent input
 //! simulate         simulated value for each measured one, with derivatives
 //! robust           loss functions, and estimates of noise that is not given
@@ -12,6 +13,7 @@
 //! comparison       comparison of an existing run with data
 //! ```
 
+pub mod abscissa;
 pub mod comparison;
 pub mod identifiability;
 pub mod outcome;
@@ -31,9 +33,10 @@ use crate::numerics::levenberg::{self, LevenbergStatus, ResidualEvaluation};
 use crate::study::analysis::{self, AnalysisRequest};
 use crate::study::data::DataTable;
 use crate::study::search_bounds::ParameterBounds;
+use abscissa::{Abscissa, DrivenNumber, FitAnalysis};
 use identifiability::{IdentificationInput, unseen};
 use outcome::{Bound, ColumnResiduals, Fit, FittedColumn, FittedNumber, SimulatorError};
-use problem::{DrivenNumber, FitAnalysis, FitProblem, FitRequest};
+use problem::{FitProblem, FitRequest};
 use search::{FitOutcome, FitSearch};
 use statistics::CovarianceInput;
 
@@ -65,12 +68,12 @@ pub fn left_alone(table: &DataTable, asked: &FitRequest) -> Vec<String> {
     let matched = asked.matches.iter().filter_map(|one| table.find(&one.column));
     let noise = matched.clone().filter_map(|k| table.deviation(k));
     let driven = asked.drives.iter().filter_map(|drive| table.find(&drive.column));
-    let time = asked
-        .drives
-        .is_empty()
-        .then(|| table.time(asked.time.as_deref()).ok())
-        .flatten();
-    let used: Vec<usize> = matched.chain(noise).chain(driven).chain(time).collect();
+    let along = match asked.through() {
+        FitAnalysis::Run => table.time(asked.time.as_deref()).ok(),
+        FitAnalysis::Equilibrium => None,
+        FitAnalysis::Response => table.frequency().ok(),
+    };
+    let used: Vec<usize> = matched.chain(noise).chain(driven).chain(along).collect();
     let all = table.columns.iter().enumerate();
     all.filter(|(k, _)| !used.contains(k))
         .map(|(_, one)| one.heading.clone())
@@ -107,7 +110,7 @@ pub fn fit(
     };
     let exact = match problem.through() {
         FitAnalysis::Run => CARRIED * problem.case.solver.rtol,
-        FitAnalysis::Equilibrium => EXACT,
+        FitAnalysis::Equilibrium | FitAnalysis::Response => EXACT,
     };
     let blind = unseen(&IdentificationInput {
         spans: &problem.spans,
@@ -149,9 +152,10 @@ pub fn fit(
         data: data.0.into(),
         data_crc32: data.1,
         command: problem.through(),
+        input: asked.input.clone(),
         drives: match &problem.abscissa {
-            problem::Abscissa::Time(_) => vec![],
-            problem::Abscissa::Drives(drives) => drives
+            Abscissa::Time(_) | Abscissa::Frequencies(..) => vec![],
+            Abscissa::Drives(drives) => drives
                 .iter()
                 .map(|(drive, _): &(DrivenNumber, _)| drive.clone())
                 .collect(),
@@ -348,7 +352,7 @@ fn of_the_model(problem: &FitProblem, case: &Case, stop: &(dyn Fn() -> bool + Sy
         return vec![];
     }
     let ask = AnalysisRequest {
-        what: problem.through().command(),
+        what: &problem.analysis(),
         accuracy: None,
         from: None,
         meshes: true,

@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::problem::{DrivenNumber, FitAnalysis};
+use super::abscissa::{DrivenNumber, FitAnalysis};
 use super::robust::LossFunction;
 use crate::run::json_null;
 use crate::study::data::Match;
@@ -17,8 +17,11 @@ pub struct Fit {
     pub data: String,
     /// Checksum of the data file.
     pub data_crc32: u32,
-    /// Analysis of the case: a run or equilibria.
+    /// Analysis of the case: a run, equilibria or a frequency response.
     pub command: FitAnalysis,
+    /// Input of a frequency response: the JSON pointer of a signal of the case.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub input: Option<String>,
     /// Numbers of the case that each row of the data sets.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub drives: Vec<DrivenNumber>,

@@ -1,74 +1,16 @@
 //! Fit problem: a case, the numbers to be fitted, and measured values.
 
-use serde::{Deserialize, Serialize};
-
+use super::abscissa::{Abscissa, DrivenNumber, FitAnalysis, columns, figure_of_response};
 use super::robust::LossFunction;
-use crate::case::heading::Heading;
 use crate::case::parameter::{Parameter, with};
 use crate::case::schema::{Case, Thinning};
-use crate::case::{nearest, units};
-use crate::discrete::System;
 use crate::discrete::quantities::Observable;
 use crate::error::numbers::counted;
-use crate::error::{Error, Result, visible};
-use crate::run::equilibrium;
-use crate::run::observe::Observer;
-use crate::study::analysis::AnalysisKind;
-use crate::study::data::matching::Named;
+use crate::error::{Error, Result};
+use crate::study::analysis::{AnalysisKind, ResponseAnalysis};
 use crate::study::data::{DataTable, Match, Matched, matching};
 use crate::study::evaluations::Evaluations;
 use crate::study::search_bounds::{self, ParameterBounds};
-
-/// Analysis of the case.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum FitAnalysis {
-    /// Run in time: one row per instant.
-    Run,
-    /// Equilibria: one case per row.
-    Equilibrium,
-}
-
-impl FitAnalysis {
-    /// Returns the command.
-    pub fn command(self) -> AnalysisKind {
-        match self {
-            Self::Run => AnalysisKind::Run,
-            Self::Equilibrium => AnalysisKind::Equilibrium,
-        }
-    }
-}
-
-/// `COLUMN=POINTER`: a number of the case that every row sets.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
-pub struct DrivenNumber {
-    /// Column of the data.
-    pub column: String,
-    /// JSON pointer into the case.
-    pub pointer: String,
-}
-
-impl DrivenNumber {
-    /// Parses `COLUMN=POINTER`.
-    ///
-    /// # Errors
-    /// [`Error::Usage`] with the expected form.
-    pub fn parse(text: &str) -> Result<Self> {
-        let parts = text
-            .rsplit_once('=')
-            .map(|(column, pointer)| (column.trim(), pointer.trim()));
-        match parts {
-            Some((column, pointer)) if !column.is_empty() && pointer.starts_with('/') => Ok(Self {
-                column: column.into(),
-                pointer: pointer.into(),
-            }),
-            _ => Err(Error::Usage(format!(
-                "--drive '{text}': expected a column and a JSON pointer, such as \
-                 pressure_kpa=/network/chains/0/ends/0/pressure_pa"
-            ))),
-        }
-    }
-}
 
 /// Requested fit.
 #[derive(Clone, Debug, PartialEq)]
@@ -83,6 +25,8 @@ pub struct FitRequest {
     pub drives: Vec<DrivenNumber>,
     /// Standard deviations of columns in their own units.
     pub noise: Vec<(String, f64)>,
+    /// Input of a response: the JSON pointer of a signal of the case.
+    pub input: Option<String>,
     /// Loss function.
     pub loss: LossFunction,
     /// Number of searches, each from another start.
@@ -91,13 +35,15 @@ pub struct FitRequest {
     pub jobs: usize,
 }
 
-/// Independent variable of the rows.
-#[derive(Clone, Debug, PartialEq)]
-pub enum Abscissa {
-    /// Instants [s].
-    Time(Vec<f64>),
-    /// Numbers of the case, with a list of values each.
-    Drives(Vec<(DrivenNumber, Vec<f64>)>),
+impl FitRequest {
+    /// Returns the analysis of the case.
+    pub fn through(&self) -> FitAnalysis {
+        match (&self.input, self.drives.is_empty()) {
+            (Some(_), _) => FitAnalysis::Response,
+            (None, true) => FitAnalysis::Run,
+            (None, false) => FitAnalysis::Equilibrium,
+        }
+    }
 }
 
 /// A measured value.
@@ -147,13 +93,13 @@ impl FitProblem {
         let mut case = case.clone();
         case.time.history = Thinning::All;
         let names = asked.matches.iter().map(|one| one.placed(&mut case));
-        let names = names.collect::<Result<Vec<_>>>()?;
-        let through = if asked.drives.is_empty() {
-            FitAnalysis::Run
-        } else {
-            FitAnalysis::Equilibrium
-        };
-        let columns = columns(&case, through)?;
+        let mut names = names.collect::<Result<Vec<_>>>()?;
+        let columns = columns(&case, asked)?;
+        if asked.through() == FitAnalysis::Response {
+            names
+                .iter_mut()
+                .for_each(|name| *name = figure_of_response(&columns, name));
+        }
         let matched = matching::resolve(table, &asked.matches, &names, &columns)?;
         for one in &matched {
             let aside = ["t", "load_factor"].contains(&one.name.as_str());
@@ -165,10 +111,7 @@ impl FitProblem {
         let sigmas = sigmas(table, &matched, asked)?;
         let measured = |row: &usize| matched.iter().any(|one| one.values[*row].is_some());
         let rows: Vec<usize> = (0..table.len()).filter(measured).collect();
-        let abscissa = match through {
-            FitAnalysis::Run => Abscissa::Time(instants(&case, table, asked, &rows)?),
-            FitAnalysis::Equilibrium => Abscissa::Drives(driven(&case, table, asked, &rows)?),
-        };
+        let abscissa = Abscissa::read(&case, table, asked, &rows)?;
         let mut observations = vec![];
         for (place, row) in rows.iter().enumerate() {
             for (of, one) in matched.iter().enumerate() {
@@ -203,7 +146,7 @@ impl FitProblem {
             evaluations: Evaluations::default(),
         };
         let begin = problem.with(&problem.start)?;
-        let what = through.command();
+        let what = problem.analysis();
         search_bounds::check(&begin, &problem.spans, true, &|case| what.analysis().check(case))?;
         Ok(problem)
     }
@@ -221,15 +164,41 @@ impl FitProblem {
         match self.abscissa {
             Abscissa::Time(_) => FitAnalysis::Run,
             Abscissa::Drives(_) => FitAnalysis::Equilibrium,
+            Abscissa::Frequencies(..) => FitAnalysis::Response,
         }
+    }
+
+    /// Returns the command that computes the case alone.
+    pub fn analysis(&self) -> AnalysisKind {
+        match &self.abscissa {
+            Abscissa::Time(_) => AnalysisKind::Run,
+            Abscissa::Drives(_) => AnalysisKind::Equilibrium,
+            Abscissa::Frequencies(input, hz) => AnalysisKind::Response(ResponseAnalysis {
+                input: input.clone(),
+                outputs: self.outputs(),
+                band: [
+                    hz.iter().copied().fold(f64::INFINITY, f64::min),
+                    hz.iter().copied().fold(0.0, f64::max),
+                ],
+                frequencies: vec![],
+            }),
+        }
+    }
+
+    /// Outputs of a response, each once.
+    pub fn outputs(&self) -> Vec<String> {
+        let mut all: Vec<String> = vec![];
+        for (output, _) in self.matched.iter().filter_map(|one| one.name.rsplit_once('.')) {
+            if !all.iter().any(|own| own == output) {
+                all.push(output.into());
+            }
+        }
+        all
     }
 
     /// Number of rows with measured values.
     pub fn rows(&self) -> usize {
-        match &self.abscissa {
-            Abscissa::Time(instants) => instants.len(),
-            Abscissa::Drives(drives) => drives.first().map_or(0, |(_, values)| values.len()),
-        }
+        self.abscissa.rows()
     }
 
     /// Returns the case with values of the fitted numbers.
@@ -260,98 +229,6 @@ impl FitProblem {
     /// Converts positions between the bounds to values.
     pub fn values(&self, places: &[f64]) -> Vec<f64> {
         search_bounds::values(&self.spans, places)
-    }
-}
-
-/// Columns of the result of a case.
-fn columns(case: &Case, through: FitAnalysis) -> Result<Vec<Named>> {
-    let all = match through {
-        FitAnalysis::Run => Observer::header(case, &System::new(case)?).columns,
-        FitAnalysis::Equilibrium => equilibrium::columns(&equilibrium::system(case, case.time.end_s)?),
-    };
-    Ok(all
-        .into_iter()
-        .map(|column| (column.name, column.unit.into()))
-        .collect())
-}
-
-/// Returns the instants of the rows; rejects instants after the end of the run.
-fn instants(case: &Case, table: &DataTable, asked: &FitRequest, rows: &[usize]) -> Result<Vec<f64>> {
-    let column = table.time(asked.time.as_deref())?;
-    let all = table.instants(column)?;
-    let end = case.time.end_s;
-    let late = (0..all.len()).find(|row| all[*row] > end * (1.0 + 1e-12));
-    if let Some(row) = late {
-        let what = format!("{} s is after the end of the run at {end} s", all[row]);
-        let last = all[all.len() - 1];
-        let fault = table
-            .fault(row, column, &what)
-            .hint(format!("--set /time/end_s={last}"));
-        return table.sound(vec![fault]).map(|()| vec![]);
-    }
-    Ok(rows.iter().map(|row| all[*row].min(end)).collect())
-}
-
-/// Returns the values that each row sets.
-fn driven(case: &Case, table: &DataTable, asked: &FitRequest, rows: &[usize]) -> Result<Vec<(DrivenNumber, Vec<f64>)>> {
-    let resolved = serde_json::to_value(case.resolved()).unwrap_or_default();
-    let mut all = vec![];
-    for drive in &asked.drives {
-        let wrong = |what: String| Error::Usage(format!("--drive {}={}: {what}", drive.column, drive.pointer));
-        let column = table.wanted(&drive.column, "--drive")?;
-        if resolved.pointer(&drive.pointer).is_none() {
-            let (parent, key) = drive.pointer.rsplit_once('/').unwrap_or_default();
-            let keys = resolved.pointer(parent).and_then(|parent| parent.as_object());
-            let meant = keys.and_then(|keys| nearest(key, keys.keys().map(String::as_str)));
-            let meant = meant.map_or(String::new(), |meant| format!("; nearest is {parent}/{meant}"));
-            return Err(wrong(format!("the case has no such entry{meant}")));
-        }
-        let scale = match units::of_pointer(&drive.pointer) {
-            Some(unit) => table.scale(column, unit.si, &drive.pointer)?,
-            None => unnamed(&table.columns[column], &drive.pointer).map_err(wrong)?,
-        };
-        let values = table.all_numbers(column, scale)?;
-        let chosen: Vec<f64> = rows.iter().map(|row| values[*row]).collect();
-        all.push((drive.clone(), chosen));
-    }
-    // every row must give a valid case
-    for row in 0..rows.len() {
-        let changes: Vec<(&str, f64)> = all
-            .iter()
-            .map(|(drive, values)| (&*drive.pointer, values[row]))
-            .collect();
-        with(case, &changes)?;
-    }
-    Ok(all)
-}
-
-/// Factor from the unit of a column to that of a number whose key has no known unit (`_pa_s_m3`, or none): 1 for the key's own unit or for
-/// none, the scale of a dimensionless unit.
-fn unnamed(column: &Heading, pointer: &str) -> std::result::Result<f64, String> {
-    let key = pointer
-        .rsplit('/')
-        .find(|key| key.parse::<usize>().is_err())
-        .unwrap_or("");
-    let unit_name = match (&column.unit, &column.unknown) {
-        (None, None) => return Ok(1.0),
-        (Some(unit), _) => unit.name,
-        (None, Some(unknown)) => unknown,
-    };
-    let same = column.unknown.as_ref().is_some_and(|unit| {
-        let end = unit.to_ascii_lowercase().replace('^', "").replace([' ', '/'], "_");
-        let end = format!("_{end}");
-        format!("_{key}").ends_with(&end)
-    });
-    let share = column.unit.filter(|unit| unit.si == "1");
-    match share {
-        Some(share) => Ok(share.scale),
-        None if same => Ok(1.0),
-        None => Err(format!(
-            "the column {} has the unit {}, but the unit of {key} is unknown. Convert the column to the unit of the \
-             case and remove the unit from its heading",
-            visible(&column.heading),
-            visible(unit_name)
-        )),
     }
 }
 

@@ -1,19 +1,25 @@
 //! Simulated value for each measured one, with derivatives with respect to the fitted numbers: IDA's sensitivities of a
-//! run, evaluated at the instants of the data [E41], and those of equilibria [E43].
+//! run, evaluated at the instants of the data [E41], those of equilibria [E43] and of frequency responses [E98].
+
+use std::f64::consts::TAU;
 
 use nalgebra::DMatrix;
 
-use super::problem::{Abscissa, DrivenNumber, FitProblem};
+use super::abscissa::{AMPLITUDE, Abscissa, DrivenNumber, PHASE};
+use super::problem::{FitProblem, Observation};
 use crate::case::parameter::with;
 use crate::discrete::System;
 use crate::error::{Error, Result};
 use crate::run::dynamics;
 use crate::run::equilibrium::{self, EquilibriumOptions};
 use crate::run::record::Control;
+use crate::run::response::LinearResponse;
+use crate::run::response::sensitivity::ResponseJet;
 use crate::run::sensitivity::forward::DerivativeParameters;
 use crate::run::stop::INTERRUPTED;
 use crate::study::analysis::derivatives;
 use crate::study::followed::{ColumnRecorder, FollowedRow};
+use crate::study::response::derivatives::{at_frequencies, equation_slopes};
 use crate::study::sweep::pool;
 
 /// Result of a simulation.
@@ -51,9 +57,17 @@ fn computed(problem: &FitProblem, values: &[f64], jobs: usize, stop: &(dyn Fn() 
     let rows = match &problem.abscissa {
         Abscissa::Time(instants) => run(problem, values, instants, stop)?,
         Abscissa::Drives(drives) => rest(problem, values, drives, jobs, stop)?,
+        Abscissa::Frequencies(input, frequencies) => respond(problem, values, input, frequencies)?,
     };
     let all = &problem.observations;
-    let value = |one: &super::problem::Observation| rows[one.row].0[one.of];
+    let value = |one: &Observation| {
+        let value = rows[one.row].0[one.of];
+        match problem.matched[one.of].name.ends_with(&format!(".{PHASE}")) {
+            // a phase has no full turns: that nearest to the measured one
+            true => value + TAU * ((one.value - value) / TAU).round(),
+            false => value,
+        }
+    };
     Ok(Simulated {
         values: all.iter().map(value).collect(),
         slopes: DMatrix::from_fn(all.len(), values.len(), |i, k| rows[all[i].row].1[k][all[i].of]),
@@ -140,4 +154,40 @@ fn of_row(
         of(&path.last().row),
         slopes.iter().map(|slope| of(&slope.row)).collect(),
     ))
+}
+
+/// Solves the linear equations at every frequency.
+fn respond(problem: &FitProblem, values: &[f64], input: &str, frequencies: &[f64]) -> Result<Vec<FollowedRow>> {
+    let case = problem.with(values)?;
+    let outputs = problem.outputs();
+    let response = LinearResponse::new(&case, input, &outputs, None)?;
+    let slopes = equation_slopes(&case, None, &response, &problem.parameters(values))?;
+    let places: Vec<(usize, bool)> = problem
+        .matched
+        .iter()
+        .filter_map(|one| {
+            let (output, figure) = one.name.rsplit_once('.')?;
+            let place = outputs.iter().position(|own| own == output)?;
+            Some((place, figure == AMPLITUDE))
+        })
+        .collect();
+    let row = |jets: &Vec<ResponseJet>| {
+        let value = |(place, amplitude): &(usize, bool)| match amplitude {
+            true => jets[*place].value.norm(),
+            false => jets[*place].value.arg(),
+        };
+        let slope = |k: usize, (place, amplitude): &(usize, bool)| {
+            let relative = jets[*place].slopes[k][0] / jets[*place].value;
+            match amplitude {
+                true => relative.re * jets[*place].value.norm(),
+                false => relative.im,
+            }
+        };
+        let slopes = (0..values.len()).map(|k| places.iter().map(|one| slope(k, one)).collect());
+        (places.iter().map(value).collect(), slopes.collect())
+    };
+    Ok(at_frequencies(&response, frequencies, &slopes)?
+        .iter()
+        .map(row)
+        .collect())
 }

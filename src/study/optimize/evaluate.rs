@@ -188,7 +188,7 @@ fn computed(
 ) -> std::result::Result<Vec<f64>, String> {
     let case = problem.with(values).map_err(|error| why(&error))?;
     let ask = AnalysisRequest {
-        what: problem.what,
+        what: &problem.what,
         accuracy: None,
         from: None,
         meshes: false,
@@ -208,7 +208,11 @@ fn wanted(problem: &OptimizationProblem, found: &AnalysisOutcome) -> std::result
     if found.status != Status::Finished {
         return Err(found.reason.clone().unwrap_or_else(|| "the run did not finish".into()));
     }
-    let of = |name: &str| found.figure(name).ok_or_else(|| format!("the result has no {name}"));
+    let absence = || problem.what.absence();
+    let of = |name: &str| {
+        let figure = found.figure(name);
+        figure.ok_or_else(|| format!("the result has no {name}{}", absence()))
+    };
     problem.figures().into_iter().map(of).collect()
 }
 

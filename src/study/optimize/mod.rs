@@ -155,7 +155,7 @@ fn finish(
     let own = |found: &AnalysisOutcome| found.figure(&problem.goal.figure);
     let mut optimum = Optimum {
         case: problem.case.name.clone(),
-        command: problem.what,
+        command: problem.what.clone(),
         goal: problem.goal.clone(),
         found,
         value: reached.figures[0],
@@ -215,7 +215,7 @@ fn finish(
 /// Result of the plain command at the optimum, with errors.
 fn check(problem: &OptimizationProblem, case: &Case, stop: &dyn Fn() -> bool) -> Option<AnalysisOutcome> {
     let ask = AnalysisRequest {
-        what: problem.what,
+        what: &problem.what,
         accuracy: None,
         from: None,
         meshes: true,

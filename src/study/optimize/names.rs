@@ -21,7 +21,7 @@ const LISTED: usize = 24;
 ///
 /// # Errors
 /// [`Error::Usage`] with the nearest name if there is no such figure.
-pub fn resolve(option: &str, text: &str, what: AnalysisKind, names: &[String]) -> Result<String> {
+pub fn resolve(option: &str, text: &str, what: &AnalysisKind, names: &[String]) -> Result<String> {
     let text = text.trim();
     let meant = MEANT.iter().map(|figure| format!("{text}.{figure}"));
     let mut asked = std::iter::once(text.to_owned()).chain(meant);

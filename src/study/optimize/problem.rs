@@ -144,16 +144,16 @@ impl OptimizationProblem {
         asked.what.analysis().check(case)?;
         let names = asked.what.analysis().names(case)?;
         let option = if asked.goal.largest { "--maximize" } else { "--minimize" };
-        let figure = resolve(option, &asked.goal.figure, asked.what, &names)?;
+        let figure = resolve(option, &asked.goal.figure, &asked.what, &names)?;
         let limit = |one: &FigureLimit| {
-            let figure = resolve("--subject-to", &one.figure, asked.what, &names)?;
+            let figure = resolve("--subject-to", &one.figure, &asked.what, &names)?;
             Ok(FigureLimit { figure, ..one.clone() })
         };
         let limits = asked.limits.iter().map(limit).collect::<Result<Vec<_>>>()?;
         contradictions(&limits)?;
         let mut problem = Self {
             case: case.clone(),
-            what: asked.what,
+            what: asked.what.clone(),
             system: match asked.what {
                 AnalysisKind::Run => Some(System::new(case)?),
                 _ => None,

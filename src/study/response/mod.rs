@@ -1,17 +1,19 @@
 //! Frequency responses over a band: peaks, poles, and errors by the meshes.
 
 pub mod approximation;
+pub mod derivatives;
+mod peaks;
 pub mod reduced;
-
-use std::convert::Infallible;
 
 use nalgebra::Complex;
 
 use self::approximation::ApproximatedResponse;
+pub use self::peaks::BandPeak;
+use self::peaks::{exact_peaks, peaks};
 use super::refine::finer_along_bladders;
 use crate::case::Case;
-use crate::error::{Error, Result};
-use crate::numerics::golden_section;
+use crate::error::numbers::counted;
+use crate::error::{Code, Error, Result};
 use crate::run::modes;
 use crate::run::record::HistoryColumn;
 use crate::run::response::LinearResponse;
@@ -30,12 +32,6 @@ const CHANGE: f64 = 0.1;
 /// Part of the distance of the samples of the grid in which at most one is added, and largest number of samples with added ones.
 const NARROW: f64 = 1.0 / 32.0;
 const MOST: usize = 4000;
-/// Part of the largest amplitude below which a local maximum is a rounding error.
-const NOISE: f64 = 1e-6;
-/// Part of an amplitude by which a peak must exceed its neighbors.
-const FLAT: f64 = 1e-9;
-/// Golden-section steps of the search for a peak; each leaves 0.62 of the interval.
-const STEPS: usize = 48;
 /// Errors of the approximation, and of those on other meshes.
 const OWN: f64 = 1e-5;
 const OTHER: f64 = 1e-4;
@@ -78,17 +74,6 @@ pub struct BandPole {
     pub bound: f64,
 }
 
-/// A local maximum of the amplitude.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct BandPeak {
-    /// Frequency [Hz].
-    pub frequency_hz: f64,
-    /// The response there.
-    pub value: Complex<f64>,
-    /// Damping ratio of the nearest pole.
-    pub damping_ratio: Option<f64>,
-}
-
 /// The response of one output.
 #[derive(Clone, Debug, PartialEq)]
 pub struct OutputResponse {
@@ -125,6 +110,34 @@ pub struct BandResponse {
 /// # Errors
 /// A frequency that is a pole.
 pub fn respond(case: &Case, request: &Request, response: LinearResponse) -> Result<BandResponse> {
+    let mut found = respond_on_mesh(case, request, response)?;
+    for (other, factor) in meshes(case)? {
+        match request
+            .compute(&other)
+            .and_then(|response| ApproximatedResponse::new(&response, request.band, &[], OTHER))
+        {
+            Ok(other) => {
+                for (k, hz) in found.frequencies.iter().enumerate() {
+                    for (curve, other) in found.curves.iter_mut().zip(other.at(*hz)) {
+                        curve.errors[k] += factor * (curve.values[k] - other).norm();
+                    }
+                }
+            }
+            Err(interrupted @ Error::Interrupted(_)) => return Err(interrupted),
+            Err(fault) => found.unknown.push(format!("errors due to the mesh: {fault}")),
+        }
+    }
+    if found.unknown.iter().any(|why| why.starts_with("errors")) {
+        found.curves.iter_mut().for_each(|curve| curve.errors.clear());
+    }
+    Ok(found)
+}
+
+/// Computes the response of a case over a band as [`respond`], with errors by the approximation only.
+///
+/// # Errors
+/// A frequency that is a pole.
+pub fn respond_on_mesh(case: &Case, request: &Request, response: LinearResponse) -> Result<BandResponse> {
     let mut unknown = vec![];
     let found = poles(case, request.at, &response, request.band);
     let mut found = found.unwrap_or_else(|why| {
@@ -138,38 +151,8 @@ pub fn respond(case: &Case, request: &Request, response: LinearResponse) -> Resu
     let approximated = ApproximatedResponse::new(&response, request.band, &known, OWN)?;
     found.complete(&response, &approximated, request.band);
     let Poles { poles, growing, .. } = found;
-    let (frequencies, values) = sample(&approximated, request, &poles);
-    let mut curves = vec![];
-    for (place, output) in response.outputs.iter().enumerate() {
-        let values: Vec<_> = values.iter().map(|all| all[place]).collect();
-        let median = approximated.medians[place];
-        let error = |(hz, value): (&f64, &Complex<f64>)| approximated.error_at(*hz) * value.norm().max(median);
-        curves.push(OutputResponse {
-            output: output.clone(),
-            peaks: peaks(&approximated, place, &frequencies, &values, &poles),
-            errors: frequencies.iter().zip(&values).map(error).collect(),
-            values,
-        });
-    }
-    for (other, factor) in meshes(case)? {
-        match request
-            .compute(&other)
-            .and_then(|response| ApproximatedResponse::new(&response, request.band, &[], OTHER))
-        {
-            Ok(other) => {
-                for (k, hz) in frequencies.iter().enumerate() {
-                    for (curve, other) in curves.iter_mut().zip(other.at(*hz)) {
-                        curve.errors[k] += factor * (curve.values[k] - other).norm();
-                    }
-                }
-            }
-            Err(interrupted @ Error::Interrupted(_)) => return Err(interrupted),
-            Err(fault) => unknown.push(format!("errors due to the mesh: {fault}")),
-        }
-    }
-    if unknown.iter().any(|why| why.starts_with("errors")) {
-        curves.iter_mut().for_each(|curve| curve.errors.clear());
-    }
+    let (frequencies, mut curves) = curves(&response, &approximated, request, &poles);
+    exact_peaks(&response, &mut curves)?;
     Ok(BandResponse {
         response,
         frequencies,
@@ -181,8 +164,55 @@ pub fn respond(case: &Case, request: &Request, response: LinearResponse) -> Resu
     })
 }
 
+/// The response of a case on another mesh for error estimates: peaks of the approximation, and its poles.
+///
+/// # Errors
+/// As [`respond`].
+pub fn respond_roughly(request: &Request, response: LinearResponse) -> Result<BandResponse> {
+    let approximated = ApproximatedResponse::new(&response, request.band, &[], OTHER)?;
+    let poles = approximated.fit.poles().into_iter();
+    let poles = poles.filter(|s| s.im > 0.0).map(|s| BandPole { s, bound: 0.0 });
+    let poles: Vec<BandPole> = poles.collect();
+    let (frequencies, curves) = curves(&response, &approximated, request, &poles);
+    Ok(BandResponse {
+        response,
+        frequencies,
+        curves,
+        poles,
+        growing: 0,
+        solved: approximated.samples.omega.len(),
+        unknown: vec![],
+    })
+}
+
+/// Frequencies [Hz] and outputs of an approximation.
+fn curves(
+    response: &LinearResponse,
+    approximated: &ApproximatedResponse,
+    request: &Request,
+    poles: &[BandPole],
+) -> (Vec<f64>, Vec<OutputResponse>) {
+    let (frequencies, all) = sample(approximated, request, poles);
+    let of = |(place, output): (usize, &HistoryColumn)| {
+        let values: Vec<_> = all.iter().map(|all| all[place]).collect();
+        let median = approximated.medians[place];
+        let error = |(hz, value): (&f64, &Complex<f64>)| approximated.error_at(*hz) * value.norm().max(median);
+        OutputResponse {
+            output: output.clone(),
+            peaks: peaks(approximated, place, &frequencies, &values, poles),
+            errors: frequencies.iter().zip(&values).map(error).collect(),
+            values,
+        }
+    };
+    let curves = response.outputs.iter().enumerate().map(of).collect();
+    (frequencies, curves)
+}
+
 /// The case on other meshes, each with the error of its own mesh over the difference to the other.
-fn meshes(case: &Case) -> Result<Vec<(Case, f64)>> {
+///
+/// # Errors
+/// As [`System::new`](crate::discrete::System::new).
+pub fn meshes(case: &Case) -> Result<Vec<(Case, f64)>> {
     let mut all = vec![];
     let mut other = case.clone();
     if case.mesh.cells_per_segment.is_multiple_of(2) {
@@ -285,6 +315,24 @@ impl Poles {
     }
 }
 
+/// Warnings of a state about which motions do not stay small.
+pub fn cautions(growing: usize, moving: bool) -> Vec<String> {
+    let mut warnings = vec![];
+    if growing > 0 {
+        warnings.push(Code::Growth.warning(format!(
+            "{} with a positive real part: small motions grow. The response is not that of a steady state",
+            counted(growing as u64, "pole")
+        )));
+    }
+    if moving {
+        warnings.push(Code::NotAtRest.warning(
+            "the state is not an equilibrium: the beam would start to move. Use `slcbeam response --at SECONDS`, or \
+             /start/equilibrium, for the equilibrium under the loads of an instant.",
+        ));
+    }
+    warnings
+}
+
 /// Linearization without the memory of unsteady friction.
 fn plain(case: &Case, at: Option<f64>) -> std::result::Result<modes::Linearised, String> {
     let plain = match at {
@@ -346,37 +394,4 @@ fn sample(response: &ApproximatedResponse, request: &Request, poles: &[BandPole]
         }
     }
     (frequencies, values)
-}
-
-/// Local maxima of an amplitude, each refined by golden-section search.
-fn peaks(
-    response: &ApproximatedResponse,
-    place: usize,
-    frequencies: &[f64],
-    values: &[Complex<f64>],
-    poles: &[BandPole],
-) -> Vec<BandPeak> {
-    let largest = values.iter().map(|value| value.norm()).fold(0.0, f64::max);
-    let mut all = vec![];
-    for k in 1..frequencies.len().saturating_sub(1) {
-        let [before, own, after] = [-1, 0, 1].map(|by: isize| values[k.wrapping_add_signed(by)].norm());
-        let rises = (own - before) + (own - after);
-        if !(own > before && own >= after) || own < NOISE * largest || rises < FLAT * own {
-            continue;
-        }
-        let at = |f: f64| response.at(f)[place];
-        let around = [frequencies[k - 1], frequencies[k + 1]];
-        let Ok(frequency_hz) = golden_section::maximum(around, STEPS, |f| Ok::<_, Infallible>(at(f).norm()));
-        let s = std::f64::consts::TAU * frequency_hz;
-        let nearest = poles
-            .iter()
-            .min_by(|a, b| (a.s.im - s).abs().total_cmp(&(b.s.im - s).abs()));
-        let damping = |pole: &BandPole| 0.0 - pole.s.re / pole.s.norm();
-        all.push(BandPeak {
-            frequency_hz,
-            value: at(frequency_hz),
-            damping_ratio: nearest.filter(|pole| (pole.s.im - s).abs() < 0.1 * s).map(damping),
-        });
-    }
-    all
 }

@@ -145,7 +145,7 @@ impl SweepPlan {
         };
         let optional = |text: Option<String>| text.unwrap_or_else(|| "none".into());
         let changed = self.cases.iter().zip(&other.cases).find(|(a, b)| a.crc32 != b.crc32);
-        differ("--command", self.command.word().into(), other.command.word().into())
+        differ("--command", self.command.describe(), other.command.describe())
             .or_else(|| differ("the list of cases", cases(self), cases(other)))
             .or_else(|| differ("--vary", axes(self), axes(other)))
             .or_else(|| differ("--design", self.design.describe(), other.design.describe()))
@@ -192,6 +192,8 @@ impl SweepPlan {
             put("--designs", file.clone());
         }
         put("--command", self.command.word().into());
+        all.extend(self.command.options());
+        let mut put = |option: &str, value: String| all.extend([option.to_owned(), value]);
         if self.design != Draw::Grid {
             put("--design", self.design.describe());
         }
@@ -230,7 +232,8 @@ impl SweepPlan {
         for set in self.sets.iter().cloned().chain(varied) {
             words.extend(["--set".to_owned(), set]);
         }
-        if let Some(accuracy) = self.accuracy {
+        words.extend(self.command.options());
+        if let Some(accuracy) = self.accuracy.filter(|_| self.command.has_accuracy()) {
             words.extend(["--accuracy".to_owned(), accuracy.to_string()]);
         }
         words.iter().map(|word| quoted(word)).collect::<Vec<_>>().join(" ")

@@ -37,6 +37,14 @@ pub fn unit(name: &str) -> &'static str {
     if figure.ends_with("_power_w") {
         return "W";
     }
+    // of a response: peaks and values at frequencies
+    match figure.rsplit_once('.') {
+        Some((_, "amplitude")) => return "output/input",
+        Some((_, "phase_deg")) => return "deg",
+        Some((_, "frequency_hz")) => return "Hz",
+        Some((_, "damping_ratio")) => return "1",
+        _ => {}
+    }
     let of = |text: &str| ENDS.iter().find(|(end, _)| text.ends_with(end)).map(|(_, unit)| *unit);
     let whole = format!("_{figure}");
     of(quantity).or_else(|| of(&whole)).unwrap_or("1")
@@ -65,6 +73,11 @@ mod tests {
             ("energy_residual_relative", "1"),
             ("period_s", "s"),
             ("stable", "1"),
+            ("tip_u1_m.peak_1.frequency_hz", "Hz"),
+            ("tip_u1_m.peak_2.damping_ratio", "1"),
+            ("tip_u1_m.at_12.5_hz.amplitude", "output/input"),
+            ("tip_u1_m.at_12.5_hz.amplitude.error", "1"),
+            ("tip_u1_m.at_12.5_hz.phase_deg", "deg"),
         ] {
             assert_eq!(unit(name), of, "{name}");
         }

@@ -16,7 +16,7 @@ pub type FirstOrderSlopes = Result<derivatives::FigureSlopes, String>;
 /// quotients of the figures for the number of the given index.
 pub fn slopes(
     case: &Case,
-    what: AnalysisKind,
+    what: &AnalysisKind,
     pointers: &[String],
     stop: &dyn Fn() -> bool,
     difference: &dyn Fn(usize) -> Option<BTreeMap<String, f64>>,
