@@ -321,6 +321,11 @@ const INDEX: &[(&str, &str, &str)] = &[
         "peaks_move_as_differences_of_the_command_say",
     ),
     ("[E100]", "tests/periodic/backbone.rs", "a_clamped_strip_hardens"),
+    (
+        "[E101]",
+        "tests/modes/power.rs",
+        "a_small_cycle_has_the_mean_powers_of_the_response",
+    ),
 ];
 
 #[test]

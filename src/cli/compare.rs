@@ -11,11 +11,12 @@ use super::terminal;
 use crate::case;
 use crate::error::{Error, Result};
 use crate::output::columns::{self, aligned};
-use crate::output::folder::{CASE, replace_alike};
+use crate::output::folder::{self, CASE, replace_alike};
 use crate::output::kind::FolderKind;
 use crate::output::numbers::{percent, quantity, significant};
-use crate::output::{comparison as recordings, fit, reading, report};
+use crate::output::{comparison as recordings, fit, reading, report, response};
 use crate::results;
+use crate::results::response::{ComparedResponses, NamedResponse};
 use crate::study::compare::changes::Change;
 use crate::study::compare::difference::Difference;
 use crate::study::compare::{Comparison, ManyComparison, Recording};
@@ -47,6 +48,9 @@ pub fn compare(asked: &CompareArguments) -> Result<ExitCode> {
             "{} is a file; data are compared with --match COLUMN=QUANTITY[@PLACE], such as angle_deg=tip_angle",
             file.display()
         ));
+    }
+    if asked.results.iter().all(|one| one.join(response::JSON).is_file()) {
+        return responses(asked);
     }
     if let Some(what) = asked.results.iter().find_map(|one| FolderKind::no_run(one)) {
         return usage(what);
@@ -98,6 +102,37 @@ pub fn compare(asked: &CompareArguments) -> Result<ExitCode> {
         ([one], false) => table(one),
         (_, true) => results::text(&found),
         (_, false) => several(&found),
+    })?;
+    written.map(|()| ExitCode::SUCCESS)
+}
+
+/// Frequency responses over each other, and their peaks.
+fn responses(asked: &CompareArguments) -> Result<ExitCode> {
+    let read = |dir: &PathBuf| -> Result<NamedResponse> {
+        Ok(NamedResponse {
+            folder: dir.display().to_string(),
+            response: folder::result(&dir.join(response::JSON))?.result,
+        })
+    };
+    let all = ComparedResponses {
+        results: asked.results.iter().map(read).collect::<Result<_>>()?,
+    };
+    let written = asked.out.as_ref().map_or(Ok(()), |path| {
+        if !picture(path) {
+            let what = format!(
+                "--out {}: for frequency responses a picture, a file that ends in .svg",
+                path.display()
+            );
+            return Err(Error::Usage(what));
+        }
+        let text = response::overlay(&all).and_then(|picture| picture.svg());
+        let text = text.ok_or_else(|| Error::Usage("nothing to draw".into()))?;
+        replace_alike(path, &text, &["<svg", "<?xml"])
+    });
+    let written = answerable(written)?;
+    super::print(&match asked.json {
+        true => results::text(&all),
+        false => response::peaks(&all),
     })?;
     written.map(|()| ExitCode::SUCCESS)
 }

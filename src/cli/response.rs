@@ -9,6 +9,7 @@ use super::uncertain::{self, Uncertain};
 use super::{resources, terminal};
 use crate::case::parameter::Parameter;
 use crate::case::{Case, inherited};
+use crate::discrete::ledger::EnergyRate;
 use crate::error::numbers::error_percent;
 use crate::error::{Code, Error, Result};
 use crate::output::kind::FolderKind;
@@ -17,11 +18,13 @@ use crate::output::response as files;
 use crate::results;
 use crate::results::ordered::Ordered;
 use crate::results::response::{
-    LinearisedState, OutputDerivatives, PeakDerivatives, ResponseCurve, ResponseDerivatives, ResponsePeak,
+    LinearisedState, OutputDerivatives, PeakDerivatives, PowerCurve, ResponseCurve, ResponseDerivatives, ResponsePeak,
     ResponsePole, ResponseRecord, ResponseValue, ValueDerivatives,
 };
+use crate::run::response::power::MeanPowers;
 use crate::study::analysis::{AnalysisKind, ResponseAnalysis};
 use crate::study::response::derivatives::{ResponseSensitivity, at_frequencies, differentiate};
+use crate::study::response::power::powers;
 use crate::study::response::{self, BandResponse, Request, cautions, respond};
 
 /// `response`.
@@ -54,6 +57,9 @@ pub struct ResponseArguments {
     /// Differentiate peaks and printed values with respect to a number of the case, repeatable: its JSON pointer
     #[arg(long, value_name = "POINTER")]
     pub sensitivity: Vec<String>,
+    /// Also compute mean powers over a cycle: put in, harvested by turbines, and lost, per squared input
+    #[arg(long)]
+    pub power: bool,
     /// Uncertain numbers.
     #[command(flatten)]
     pub uncertain: UncertainArguments,
@@ -89,6 +95,9 @@ pub fn response(asked: &ResponseArguments) -> Result<ExitCode> {
     let found = respond(&case, &request, linear)?;
     let mut answer = answer(&case.name, &request, &found)?;
     add_values(&mut answer, &case, request.at, &found, (&frequencies, &parameters))?;
+    if asked.power {
+        answer.powers = power_curves(&powers(&found.response, &found.frequencies)?);
+    }
     let varied = inherited::varied(&case, asked.sensitivity.iter().map(String::as_str));
     answer.warnings.extend(varied);
     let written = files::write(&mut folder, &answer).map(|_| ());
@@ -208,6 +217,7 @@ fn answer(case: &str, request: &Request, found: &BandResponse) -> Result<Respons
         first,
         further: curves.collect(),
         poles: found.poles.iter().map(pole).collect(),
+        powers: vec![],
         sensitivities: Ordered::default(),
         warnings,
     };
@@ -251,6 +261,36 @@ fn pole(pole: &response::BandPole) -> ResponsePole {
         frequency_hz: pole.s.im / std::f64::consts::TAU,
         damping_ratio: -pole.s.re / pole.s.norm(),
     }
+}
+
+/// Kinds of mean power besides that put in.
+const POWERS: [(&str, EnergyRate); 7] = [
+    ("harvested", EnergyRate::Turbines),
+    ("dissipated_bladders", EnergyRate::Bladders),
+    ("dissipated_tubes", EnergyRate::Tubes),
+    ("dissipated_rectifiers", EnergyRate::Rectifiers),
+    ("dissipated_damping", EnergyRate::Damping),
+    ("added_by_formulation", EnergyRate::Formulation),
+    ("added_by_coupling", EnergyRate::Reciprocity),
+];
+/// Power, relative to the largest, that is a rounding error.
+const NOTHING: f64 = 1e-12;
+
+/// Curves of the mean powers that are not zero.
+fn power_curves(all: &[MeanPowers]) -> Vec<PowerCurve> {
+    let curve = |power: &str, of: &dyn Fn(&MeanPowers) -> f64| PowerCurve {
+        power: power.into(),
+        mean_w: all.iter().map(of).collect(),
+    };
+    let further = POWERS.map(|(power, rate)| curve(power, &move |powers| powers.of(rate)));
+    let mut curves: Vec<PowerCurve> = [curve("input", &MeanPowers::input)]
+        .into_iter()
+        .chain(further)
+        .collect();
+    let size = |curve: &PowerCurve| curve.mean_w.iter().fold(0.0_f64, |m, x| m.max(x.abs()));
+    let largest = curves.iter().map(size).fold(0.0, f64::max);
+    curves.retain(|curve| curve.power == "input" || size(curve) > NOTHING * largest);
+    curves
 }
 
 /// Adds the response at requested frequencies, and derivatives by numbers of the case.

@@ -7,14 +7,17 @@ use super::columns::{table, warnings};
 use super::folder::ResultFolder;
 use super::numbers::{counted, shortest, significant};
 use super::plot::canvas::LineStyle;
-use super::plot::colour::PALETTE;
+use super::plot::colour::{Colour, PALETTE};
 use super::plot::extent;
 use super::plot::picture::{Panel, Picture, PictureAxis, PictureSeries};
 use super::records;
 use crate::error::Result;
 use crate::error::numbers::error_percent;
 use crate::results;
-use crate::results::response::{ResponseCurve, ResponseDerivatives, ResponsePeak, ResponseRecord, ResponseValue};
+use crate::results::response::{
+    ComparedResponses, NamedResponse, PowerCurve, ResponseCurve, ResponseDerivatives, ResponsePeak, ResponseRecord,
+    ResponseValue,
+};
 
 /// One row per frequency.
 pub const CSV: &str = "response.csv";
@@ -22,6 +25,8 @@ pub const CSV: &str = "response.csv";
 pub const JSON: &str = "response.json";
 /// Amplitude and phase.
 pub const PICTURE: &str = "response.svg";
+/// Responses in the complex plane.
+pub const NYQUIST: &str = "nyquist.svg";
 
 /// The text of `response.csv`.
 fn csv(found: &ResponseRecord) -> String {
@@ -37,6 +42,12 @@ fn csv(found: &ResponseRecord) -> String {
     };
     let headings: Vec<String> = std::iter::once("frequency [Hz]".into())
         .chain(found.curves().flat_map(columns))
+        .chain(
+            found
+                .powers
+                .iter()
+                .map(|curve| format!("mean power {} [W/input²]", curve.power)),
+        )
         .collect();
     let row = |(k, f): (usize, &f64)| {
         let mut row = vec![shortest(*f)];
@@ -45,6 +56,7 @@ fn csv(found: &ResponseRecord) -> String {
             row.extend([re, im, re.hypot(im), im.atan2(re).to_degrees()].map(shortest));
             row.extend(curve.error.get(k).map(|error| shortest(*error)));
         }
+        row.extend(found.powers.iter().map(|curve| shortest(curve.mean_w[k])));
         row
     };
     records::text(
@@ -94,11 +106,29 @@ pub fn describe(found: &ResponseRecord) -> String {
             );
         }
     }
+    text += &powers(found);
     let _ = writeln!(text, "{} found in the band", counted(found.poles.len() as u64, "pole"));
     for (pointer, slopes) in &found.sensitivities.0 {
         text += &derivatives(found, pointer, slopes);
     }
     text + &warnings(&found.warnings)
+}
+
+/// Table of the largest mean powers.
+fn powers(found: &ResponseRecord) -> String {
+    let Some(input) = found.powers.first() else {
+        return String::new();
+    };
+    let row = |curve: &PowerCurve| {
+        let k = curve.largest()?;
+        let (hz, power) = (found.frequency_hz[k], curve.mean_w[k]);
+        let share = significant(100.0 * power / input.mean_w[k], 3);
+        let numbers = [significant(hz, 7), significant(power, 5), format!("{share} %")];
+        let named = [String::new(), curve.power.clone()].into_iter();
+        Some(named.chain(numbers).collect::<Vec<_>>())
+    };
+    let heading = " | <mean power | largest at [Hz] | [W/input²] | of the input there";
+    table(heading, found.powers.iter().filter_map(row)) + "\n"
 }
 
 /// Changes of peaks and values for 1 % of a number.
@@ -169,18 +199,66 @@ fn row(curve: &ResponseCurve, peak: &ResponsePeak) -> [String; 7] {
 /// # Errors
 /// A file cannot be written.
 pub fn write(folder: &mut ResultFolder, found: &ResponseRecord) -> Result<Vec<PathBuf>> {
-    let picture = picture(found).and_then(|picture| picture.svg());
     let mut files = vec![(CSV, csv(found)), (JSON, results::text(found))];
-    files.extend(picture.map(|text| (PICTURE, text)));
+    for (name, picture) in [(PICTURE, picture(found)), (NYQUIST, nyquist(found))] {
+        files.extend(picture.and_then(|picture| picture.svg()).map(|text| (name, text)));
+    }
     folder.fill(files)
 }
 
 /// Largest distance of a drawn amplitude from the median [dB]: undamped poles and zeros are unbounded.
 const AROUND: f64 = 100.0;
 
-/// Picture of amplitude and phase over frequency.
+/// Picture of amplitude, phase and mean powers over frequency.
 fn picture(found: &ResponseRecord) -> Option<Picture> {
-    let band = (*found.frequency_hz.first()?, *found.frequency_hz.last()?);
+    let curves: Vec<_> = found
+        .curves()
+        .map(|curve| (curve.output.clone(), &found.frequency_hz[..], curve))
+        .collect();
+    let mut panels = bode(&curves)?;
+    let power = |(curve, colour): (&PowerCurve, &Colour)| {
+        let points = found.frequency_hz.iter().copied().zip(curve.mean_w.iter().copied());
+        let points: Vec<_> = points.filter(|(_, power)| *power > 0.0).collect();
+        PictureSeries::line(points, LineStyle::solid(*colour, 1.6)).named(curve.power.replace('_', " "))
+    };
+    let powers: Vec<_> = found.powers.iter().zip(PALETTE.iter().cycle()).map(power).collect();
+    if !powers.is_empty() {
+        let axis = PictureAxis::new("mean power", "W/input²", 5).logarithmic(true);
+        panels.push(Panel::new((620.0, 200.0), panels[0].x.clone(), axis, powers));
+    }
+    let title = format!("{} · frequency response", found.case);
+    Some(Picture::stacked(title, format!("to {}", found.input), panels))
+}
+
+/// Picture of the responses of several results.
+pub fn overlay(all: &ComparedResponses) -> Option<Picture> {
+    let of = |one: &NamedResponse| {
+        let several = !one.response.further.is_empty();
+        let named = |curve: &ResponseCurve| match several {
+            true => format!("{}: {}", one.folder, curve.output),
+            false => one.folder.clone(),
+        };
+        one.response.curves().map(named).collect::<Vec<_>>()
+    };
+    let names = all.results.iter().flat_map(of);
+    let curves = all.results.iter().flat_map(|one| {
+        let hz = &one.response.frequency_hz[..];
+        one.response.curves().map(move |curve| (hz, curve))
+    });
+    let curves: Vec<_> = names.zip(curves).map(|(name, (hz, curve))| (name, hz, curve)).collect();
+    let mut inputs: Vec<&str> = all.results.iter().map(|one| one.response.input.as_str()).collect();
+    inputs.dedup();
+    let title = "frequency responses".to_owned();
+    Some(Picture::stacked(
+        title,
+        format!("to {}", inputs.join(", ")),
+        bode(&curves)?,
+    ))
+}
+
+/// Panels of amplitude and phase of curves with names and frequencies.
+fn bode(curves: &[(String, &[f64], &ResponseCurve)]) -> Option<Vec<Panel>> {
+    let band = extent(curves.iter().flat_map(|(_, hz, _)| hz.iter().copied()))?;
     let x = || {
         PictureAxis::new("frequency", "Hz", 8)
             .between(band.0, band.1)
@@ -191,8 +269,8 @@ fn picture(found: &ResponseRecord) -> Option<Picture> {
         parts.map(|(re, im)| 20.0 * re.hypot(*im).log10()).collect()
     };
     let (mut amplitudes, mut phases) = (vec![], vec![]);
-    extent(found.curves().flat_map(decibel))?;
-    for (curve, colour) in found.curves().zip(PALETTE.iter().cycle()) {
+    extent(curves.iter().flat_map(|(.., curve)| decibel(curve)))?;
+    for ((name, hz, curve), colour) in curves.iter().zip(PALETTE.iter().cycle()) {
         let stroke = LineStyle::solid(*colour, 1.6);
         let all = decibel(curve);
         let mut sorted: Vec<f64> = all.iter().copied().filter(|amplitude| amplitude.is_finite()).collect();
@@ -203,10 +281,10 @@ fn picture(found: &ResponseRecord) -> Option<Picture> {
         let drawn = all
             .into_iter()
             .map(|amplitude| amplitude.clamp(middle - AROUND, middle + AROUND));
-        let points = found.frequency_hz.iter().copied().zip(drawn);
-        amplitudes.push(PictureSeries::line(points, stroke).named(&curve.output));
+        let points = hz.iter().copied().zip(drawn);
+        amplitudes.push(PictureSeries::line(points, stroke).named(name));
         let mut phase: Vec<(f64, f64)> = vec![];
-        for (f, (re, im)) in found.frequency_hz.iter().zip(curve.real.iter().zip(&curve.imag)) {
+        for (f, (re, im)) in hz.iter().zip(curve.real.iter().zip(&curve.imag)) {
             let angle = im.atan2(*re).to_degrees();
             // a jump by a full turn is not part of the curve
             if phase.last().is_some_and(|(_, before)| (angle - before).abs() > 270.0) {
@@ -221,13 +299,46 @@ fn picture(found: &ResponseRecord) -> Option<Picture> {
         labels: Some(quarters.to_vec()),
         ..PictureAxis::new("phase [°]", "", 5).between(-180.0, 180.0)
     };
-    let panels = [
+    Some(vec![
         Panel::new((620.0, 250.0), x(), PictureAxis::new("amplitude", "dB", 6), amplitudes),
         Panel::new((620.0, 150.0), x(), phase_axis, phases),
-    ];
+    ])
+}
+
+/// Table of the peaks of several results.
+pub fn peaks(all: &ComparedResponses) -> String {
+    let of = |one: &NamedResponse| {
+        let rows = |curve: &ResponseCurve| {
+            let peaks = curve.peaks.iter().map(|peak| row(curve, peak));
+            peaks
+                .map(|row| [&[one.folder.clone()], &row[1..]].concat())
+                .collect::<Vec<_>>()
+        };
+        one.response.curves().flat_map(rows).collect::<Vec<_>>()
+    };
+    let headings = "<result | <output | peak [Hz] | amplitude | [dB] | phase [°] | damping ratio";
+    table(headings, all.results.iter().flat_map(of))
+}
+
+/// Picture of each response in the complex plane, over its largest amplitude (Nyquist).
+fn nyquist(found: &ResponseRecord) -> Option<Picture> {
+    let series = |(curve, colour): (&ResponseCurve, &Colour)| {
+        let parts = || curve.real.iter().copied().zip(curve.imag.iter().copied());
+        let largest = parts().map(|(re, im)| re.hypot(im)).fold(0.0, f64::max);
+        let points = parts().map(|(re, im)| (re / largest, im / largest));
+        let points: Vec<_> = points.filter(|(re, im)| re.is_finite() && im.is_finite()).collect();
+        PictureSeries::line(points, LineStyle::solid(*colour, 1.6)).named(&curve.output)
+    };
+    let all: Vec<_> = found.curves().zip(PALETTE.iter().cycle()).map(series).collect();
+    found.frequency_hz.get(1)?;
+    let axis = |name: &str| PictureAxis::new(name, "", 5).between(-1.0, 1.0).with(&[0.0]);
+    let panel = Panel::new((420.0, 420.0), axis("real part"), axis("imaginary part"), all);
     Some(Picture::stacked(
-        format!("{} · frequency response", found.case),
-        format!("to {}", found.input),
-        panels,
+        format!("{} · responses in the complex plane", found.case),
+        format!(
+            "to {}, each over its largest amplitude; clockwise as the frequency increases",
+            found.input
+        ),
+        [panel],
     ))
 }

@@ -29,6 +29,9 @@ pub struct ResponseRecord {
     pub further: Vec<ResponseCurve>,
     /// Poles in the band, the lowest first.
     pub poles: Vec<ResponsePole>,
+    /// Mean powers at each frequency, if requested: put in, harvested and lost, those that are not zero.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub powers: Vec<PowerCurve>,
     /// Derivatives of peaks and values, by JSON pointers of numbers of the case.
     #[serde(default, skip_serializing_if = "Ordered::is_empty")]
     pub sensitivities: Ordered<ResponseDerivatives>,
@@ -37,6 +40,24 @@ pub struct ResponseRecord {
 }
 
 impl ResultFile for ResponseRecord {}
+
+/// Responses of several results.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct ComparedResponses {
+    /// The results.
+    pub results: Vec<NamedResponse>,
+}
+
+/// A response and its folder.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct NamedResponse {
+    /// Path of the folder.
+    pub folder: String,
+    /// The response.
+    pub response: ResponseRecord,
+}
+
+impl ResultFile for ComparedResponses {}
 
 impl ResponseRecord {
     /// All outputs.
@@ -84,6 +105,23 @@ impl ResponseCurve {
         });
         let largest = self.error.iter().copied().reduce(f64::max)? / sizes().fold(0.0, f64::max);
         Some([median?.0, largest]).filter(|both| both.iter().all(|e| e.is_finite()))
+    }
+}
+
+/// Mean power over a cycle, for an input of unit amplitude.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct PowerCurve {
+    /// Key of the power, as in [`data`](crate::results): `input`, `harvested`, `dissipated_tubes`.
+    pub power: String,
+    /// Power at each frequency [W over the squared unit of the input].
+    pub mean_w: Vec<f64>,
+}
+
+impl PowerCurve {
+    /// Index of the largest power.
+    pub fn largest(&self) -> Option<usize> {
+        let all = self.mean_w.iter().enumerate();
+        all.max_by(|a, b| a.1.abs().total_cmp(&b.1.abs())).map(|(k, _)| k)
     }
 }
 

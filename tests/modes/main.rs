@@ -8,6 +8,7 @@ mod fourth;
 mod gaps;
 mod left_out;
 mod physics;
+mod power;
 mod reduced;
 mod response;
 mod response_derivatives;

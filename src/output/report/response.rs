@@ -6,7 +6,7 @@ use super::{FolderKind, Page, Place, StoredResult};
 use crate::error::Result;
 use crate::output::folder::CASE;
 use crate::output::numbers::{counted, significant};
-use crate::output::response::{JSON, PICTURE};
+use crate::output::response::{JSON, NYQUIST, PICTURE};
 use crate::results::response::{LinearisedState, ResponseRecord};
 
 /// Data of the page.
@@ -41,6 +41,10 @@ pub fn data(place: &Place) -> Result<Page> {
             "title": "Amplitude and phase",
             "picture": place.picture(PICTURE),
             "about": "Amplitude in decibel: 20 log10 of the output over the input, in SI units. The phase is that of the output before the input.",
+        }, {
+            "title": "In the complex plane",
+            "picture": place.picture(NYQUIST),
+            "about": "Real and imaginary part of each response, over its largest amplitude (Nyquist). A lightly damped mode is a circle.",
         }]),
     );
     let rows = found.curves().flat_map(|curve| {

@@ -47,7 +47,7 @@ fn limits(quotients: &[Vec<f64>]) -> Vec<f64> {
 }
 
 /// Time of evaluation [s]: all signals are constant, and at 0 a polynomial of the input has its value without rounding.
-const NOW: f64 = 0.0;
+pub const NOW: f64 = 0.0;
 
 /// A state with an input that can be varied about it.
 pub struct Instant<'a> {

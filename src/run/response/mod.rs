@@ -12,6 +12,7 @@
 //! of the beam are relative to it.
 
 mod instant;
+pub mod power;
 pub mod sensitivity;
 pub mod state_space;
 
@@ -49,6 +50,8 @@ pub struct LinearResponse {
     pub u0: f64,
     /// Values of the outputs.
     pub z0: Vec<f64>,
+    /// Indices of the input in the system.
+    places: Vec<usize>,
     /// `f_k`, one entry for each row.
     forcing: [Vec<f64>; 3],
     /// Rows of C and D, one entry for each unknown.
@@ -77,7 +80,7 @@ impl LinearResponse {
             ..
         } = found;
         let value = signal.jet(about.clock()).value;
-        let mut instant = Instant::new(&mut about, places, value, input.contains("/opening"));
+        let mut instant = Instant::new(&mut about, places.clone(), value, input.contains("/opening"));
         let forcing = instant.derivatives_of_residual();
         let direct = instant.derivatives_of_outputs(&chosen);
         let of_state = instant.rows(&chosen);
@@ -89,6 +92,7 @@ impl LinearResponse {
             input,
             u0: value,
             z0,
+            places,
             outputs,
             forcing,
             of_state,
@@ -149,6 +153,16 @@ impl Frequencies<'_> {
     /// # Errors
     /// The frequency is a pole.
     pub fn at(&mut self, hz: f64) -> Result<Vec<Complex<f64>>> {
+        let (s, x) = self.state(hz)?;
+        let all = self.of.of_state.iter().zip(&self.of.direct);
+        Ok(all.map(|(row, direct)| output(row, direct, s, &x)).collect())
+    }
+
+    /// `s = i ω` at a frequency [Hz], and the scaled unknowns over the input.
+    ///
+    /// # Errors
+    /// As [`Frequencies::at`].
+    pub fn state(&mut self, hz: f64) -> Result<(Complex<f64>, Vec<Complex<f64>>)> {
         let s = Complex::new(0.0, std::f64::consts::TAU * hz);
         let of = self.of;
         if halt::asked() {
@@ -156,8 +170,7 @@ impl Frequencies<'_> {
         }
         let mut x: Vec<Complex<f64>> = forced(&of.forcing, s).into_iter().map(|f| -f).collect();
         self.factors.solve(s, &mut x).map_err(|failure| of.failed(&failure))?;
-        let all = of.of_state.iter().zip(&of.direct);
-        Ok(all.map(|(row, direct)| output(row, direct, s, &x)).collect())
+        Ok((s, x))
     }
 }
 

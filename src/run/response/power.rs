@@ -32,7 +32,10 @@ impl MeanPowers {
 
     /// Input and additions less all losses: zero but for rounding errors.
     pub fn residual(&self) -> f64 {
-        ENERGY_RATES.iter().map(|rate| rate.energy_sign() * self.of(*rate)).sum()
+        ENERGY_RATES
+            .iter()
+            .map(|rate| rate.energy_sign() * self.of(*rate))
+            .sum()
     }
 }
 
@@ -57,7 +60,11 @@ impl<'a> PowerMeter<'a> {
         let n = of.about.y.len();
         let at_rest = meter.powers(&vec![Complex::new(0.0, 0.0); n], Complex::new(0.0, 0.0), 0.0, 0.0)?;
         meter.at_rest = at_rest;
-        let flows = meter.at_rest.iter().take(EnergyRate::ImpulseX as usize).any(|power| *power != 0.0);
+        let flows = meter
+            .at_rest
+            .iter()
+            .take(EnergyRate::ImpulseX as usize)
+            .any(|power| *power != 0.0);
         (!flows).then_some(meter)
     }
 

@@ -3,6 +3,7 @@
 pub mod approximation;
 pub mod derivatives;
 mod peaks;
+pub mod power;
 pub mod reduced;
 
 use nalgebra::Complex;
