@@ -5,7 +5,7 @@ use std::process::ExitCode;
 use clap::Args;
 
 use super::arguments::{CaseArguments, ResultArguments};
-use super::{resources, terminal};
+use super::{cycle_response, resources, terminal};
 use crate::error::numbers::{counted, error_percent};
 use crate::error::{Code, Error, Result};
 use crate::output::kind::FolderKind;
@@ -39,6 +39,12 @@ pub struct ResponseArguments {
     /// About the equilibrium under the loads at this instant [s] [default: about the start]
     #[arg(long, value_name = "SECONDS", allow_negative_numbers = true, value_parser = crate::cli::progress_line::instant)]
     pub at: Option<f64>,
+    /// About the steady cycle of a case that loads, end motions or valves vary periodically
+    #[arg(long, conflicts_with = "at")]
+    pub about_cycle: bool,
+    /// Largest harmonic K: outputs at the input frequency plus -K to K times that of the cycle
+    #[arg(long, value_name = "K", default_value_t = 1, requires = "about_cycle", value_parser = crate::cli::progress_line::count)]
+    pub harmonics: usize,
     /// Folder, time limit and output.
     #[command(flatten)]
     pub result: ResultArguments,
@@ -55,6 +61,9 @@ const MOST: usize = 100_000;
 /// Computes the response, writes the folder, prints the peaks.
 pub fn response(asked: &ResponseArguments) -> Result<ExitCode> {
     let request = request(asked)?;
+    if asked.about_cycle {
+        return cycle_response::response(asked, request);
+    }
     let case = resources::load(&asked.case)?;
     // an input or output that does not exist is reported before a folder is created
     let linear = request.compute(&case)?;
@@ -131,6 +140,7 @@ fn answer(case: &str, request: &Request, found: &BandResponse) -> Result<Respons
             Some(_) => LinearisedState::Equilibrium,
             None => LinearisedState::Start,
         },
+        cycle: None,
         at_s: about.at,
         unknowns: about.y.len(),
         frequency_hz: found.frequencies.clone(),
@@ -139,7 +149,13 @@ fn answer(case: &str, request: &Request, found: &BandResponse) -> Result<Respons
         poles: found.poles.iter().map(pole).collect(),
         warnings,
     };
-    let coarse = |curve: &ResponseCurve| {
+    answer.warnings.extend(coarse(&answer));
+    Ok(answer)
+}
+
+/// Warnings of outputs with a large error.
+pub fn coarse(answer: &ResponseRecord) -> Vec<String> {
+    let warning = |curve: &ResponseCurve| {
         let [median, _] = curve
             .errors(&answer.frequency_hz)
             .filter(|[median, _]| *median > LARGE)?;
@@ -149,9 +165,7 @@ fn answer(case: &str, request: &Request, found: &BandResponse) -> Result<Respons
             error_percent(median)
         )))
     };
-    let coarse: Vec<String> = answer.curves().filter_map(coarse).collect();
-    answer.warnings.extend(coarse);
-    Ok(answer)
+    answer.curves().filter_map(warning).collect()
 }
 
 /// Warnings of a state about which motions do not stay small.
@@ -186,6 +200,7 @@ fn curve(curve: &response::OutputResponse) -> ResponseCurve {
         imag: curve.values.iter().map(|value| value.im).collect(),
         error: curve.errors.clone(),
         peaks: curve.peaks.iter().map(peak).collect(),
+        sidebands: vec![],
     }
 }
 

@@ -14,7 +14,7 @@ use super::records;
 use crate::error::Result;
 use crate::error::numbers::error_percent;
 use crate::results;
-use crate::results::response::{ResponseCurve, ResponsePeak, ResponseRecord};
+use crate::results::response::{ResponseCurve, ResponsePeak, ResponseRecord, ResponseSideband};
 
 /// One row per frequency.
 pub const CSV: &str = "response.csv";
@@ -23,27 +23,54 @@ pub const JSON: &str = "response.json";
 /// Amplitude and phase.
 pub const PICTURE: &str = "response.svg";
 
+/// A transfer function with its name, unit and values: real part, imaginary part, errors.
+struct Transfer<'a> {
+    name: String,
+    unit: &'a str,
+    parts: [&'a [f64]; 3],
+}
+
+/// Transfer functions of all outputs; the direct one of each precedes its sidebands.
+fn transfers(found: &ResponseRecord) -> Vec<Transfer<'_>> {
+    let mut all = vec![];
+    for curve in found.curves() {
+        let unit = curve.unit.as_str();
+        all.push(Transfer {
+            name: curve.output.clone(),
+            unit,
+            parts: [&curve.real, &curve.imag, &curve.error],
+        });
+        all.extend(curve.sidebands.iter().map(|sideband| Transfer {
+            name: format!("{} {:+}", curve.output, sideband.harmonic),
+            unit,
+            parts: [&sideband.real, &sideband.imag, &sideband.error],
+        }));
+    }
+    all
+}
+
 /// The text of `response.csv`.
 fn csv(found: &ResponseRecord) -> String {
-    let columns = |curve: &ResponseCurve| {
-        let (name, unit) = (&curve.output, &curve.unit);
-        let parts = ["real", "imaginary", "amplitude"].map(|part| format!("{part} {name} [{unit}/input]"));
-        let error = (!curve.error.is_empty()).then(|| format!("error {name} [{unit}/input]"));
-        parts
+    let all = transfers(found);
+    let columns = |transfer: &Transfer| {
+        let Transfer { name, unit, parts } = transfer;
+        let values = ["real", "imaginary", "amplitude"].map(|part| format!("{part} {name} [{unit}/input]"));
+        let error = (!parts[2].is_empty()).then(|| format!("error {name} [{unit}/input]"));
+        values
             .into_iter()
             .chain([format!("phase {name} [deg]")])
             .chain(error)
             .collect::<Vec<_>>()
     };
     let headings: Vec<String> = std::iter::once("frequency [Hz]".into())
-        .chain(found.curves().flat_map(columns))
+        .chain(all.iter().flat_map(columns))
         .collect();
     let row = |(k, f): (usize, &f64)| {
         let mut row = vec![shortest(*f)];
-        for curve in found.curves() {
-            let (re, im) = (curve.real[k], curve.imag[k]);
+        for Transfer { parts: [real, imag, error], .. } in &all {
+            let (re, im) = (real[k], imag[k]);
             row.extend([re, im, re.hypot(im), im.atan2(re).to_degrees()].map(shortest));
-            row.extend(curve.error.get(k).map(|error| shortest(*error)));
+            row.extend(error.get(k).map(|error| shortest(*error)));
         }
         row
     };
@@ -76,17 +103,29 @@ pub fn describe(found: &ResponseRecord) -> String {
         rows,
     );
     text.push('\n');
+    text += &sidebands(found);
+    let cause = if found.cycle.is_some() { "mesh and steps" } else { "the mesh" };
     for curve in found.curves() {
         if let Some([median, largest]) = curve.errors(&found.frequency_hz) {
             let [median, largest] = [median, largest].map(error_percent);
             let _ = writeln!(
                 text,
-                "error of {} by the mesh: {median} in the median over frequencies; at most {largest} of the largest amplitude",
+                "error of {} by {cause}: {median} in the median over frequencies; at most {largest} of the largest amplitude",
                 curve.output
             );
         }
     }
-    let _ = writeln!(text, "{} found in the band", counted(found.poles.len() as u64, "pole"));
+    if let Some(cycle) = &found.cycle {
+        let _ = writeln!(
+            text,
+            "cycle of {} Hz: {}, residual {:.0e}",
+            significant(1.0 / cycle.period_s, 4),
+            counted(cycle.steps as u64, "step"),
+            cycle.residual
+        );
+    } else {
+        let _ = writeln!(text, "{} found in the band", counted(found.poles.len() as u64, "pole"));
+    }
     text + &warnings(&found.warnings)
 }
 
@@ -100,6 +139,32 @@ fn row(curve: &ResponseCurve, peak: &ResponsePeak) -> [String; 7] {
         format!("{:.1}", peak.phase_deg),
         peak.damping_ratio.map_or(String::new(), |ratio| significant(ratio, 4)),
     ]
+}
+
+/// Table of the largest values of sidebands, if there are any.
+fn sidebands(found: &ResponseRecord) -> String {
+    let Some(cycle) = &found.cycle else { return String::new() };
+    let row = |curve: &ResponseCurve, sideband: &ResponseSideband| {
+        let [hz, size] = sideband.largest(&found.frequency_hz)?;
+        let out = hz + f64::from(sideband.harmonic) / cycle.period_s;
+        Some([
+            String::new(),
+            curve.output.clone(),
+            format!("{:+}", sideband.harmonic),
+            significant(hz, 7),
+            significant(out.abs(), 7),
+            significant(size, 5),
+            format!("{:.2}", 20.0 * size.log10()),
+        ])
+    };
+    let rows = found
+        .curves()
+        .flat_map(|curve| curve.sidebands.iter().filter_map(move |sideband| row(curve, sideband)));
+    let rows: Vec<[String; 7]> = rows.collect();
+    table(
+        " | <sideband | harmonic | input [Hz] | output [Hz] | amplitude | [dB]",
+        rows,
+    ) + "\n"
 }
 
 /// Writes the files into a folder.
@@ -124,15 +189,17 @@ fn picture(found: &ResponseRecord) -> Option<Picture> {
             .between(band.0, band.1)
             .logarithmic(true)
     };
-    let decibel = |curve: &ResponseCurve| -> Vec<f64> {
-        let parts = curve.real.iter().zip(&curve.imag);
+    let decibel = |transfer: &Transfer| -> Vec<f64> {
+        let [real, imag, _] = transfer.parts;
+        let parts = real.iter().zip(imag);
         parts.map(|(re, im)| 20.0 * re.hypot(*im).log10()).collect()
     };
     let (mut amplitudes, mut phases) = (vec![], vec![]);
-    extent(found.curves().flat_map(decibel))?;
-    for (curve, colour) in found.curves().zip(PALETTE.iter().cycle()) {
+    let transfers = transfers(found);
+    extent(transfers.iter().flat_map(decibel))?;
+    for (transfer, colour) in transfers.iter().zip(PALETTE.iter().cycle()) {
         let stroke = LineStyle::solid(*colour, 1.6);
-        let all = decibel(curve);
+        let all = decibel(transfer);
         let mut sorted: Vec<f64> = all.iter().copied().filter(|amplitude| amplitude.is_finite()).collect();
         sorted.sort_by(f64::total_cmp);
         let Some(&middle) = sorted.get(sorted.len() / 2) else {
@@ -142,9 +209,10 @@ fn picture(found: &ResponseRecord) -> Option<Picture> {
             .into_iter()
             .map(|amplitude| amplitude.clamp(middle - AROUND, middle + AROUND));
         let points = found.frequency_hz.iter().copied().zip(drawn);
-        amplitudes.push(PictureSeries::line(points, stroke).named(&curve.output));
+        amplitudes.push(PictureSeries::line(points, stroke).named(&transfer.name));
         let mut phase: Vec<(f64, f64)> = vec![];
-        for (f, (re, im)) in found.frequency_hz.iter().zip(curve.real.iter().zip(&curve.imag)) {
+        let [real, imag, _] = transfer.parts;
+        for (f, (re, im)) in found.frequency_hz.iter().zip(real.iter().zip(imag)) {
             let angle = im.atan2(*re).to_degrees();
             // a jump by a full turn is not part of the curve
             if phase.last().is_some_and(|(_, before)| (angle - before).abs() > 270.0) {

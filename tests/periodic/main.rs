@@ -3,6 +3,7 @@
 mod branch;
 mod command;
 mod floquet;
+mod harmonic;
 mod self_oscillation;
 mod shooting;
 mod subharmonic;

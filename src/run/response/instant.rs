@@ -6,7 +6,7 @@ use super::motion;
 use crate::dae::{BeamDae, Dae as _};
 use crate::discrete::ledger;
 use crate::discrete::quantities::{Extremes, ObservableRow, StateView, probes, stations};
-use crate::functions::Signal;
+use crate::functions::{Signal, SmoothTime};
 use crate::functions::signals::Polynomial;
 use crate::integrate::halt;
 use crate::run::modes::Linearised;
@@ -46,15 +46,15 @@ fn limits(quotients: &[Vec<f64>]) -> Vec<f64> {
     (0..quotients[0].len()).map(of).collect()
 }
 
-/// Time of evaluation [s]: all signals are constant, and at 0 a polynomial of the input has its value without rounding.
-const NOW: f64 = 0.0;
-
-/// A state with an input that can be varied about it.
+/// A state at an instant, with an input that can be varied about its signal.
 pub struct Instant<'a> {
     dae: &'a mut BeamDae,
+    /// Time [s]. At 0 a polynomial of the input has its value without rounding.
+    t: f64,
     y: Vec<f64>,
     yp: Vec<f64>,
     places: Vec<usize>,
+    signal: Signal,
     /// Value of the input. `opens` is true if it is an opening, which is limited to 0 to 1.
     value: f64,
     opens: bool,
@@ -63,9 +63,15 @@ pub struct Instant<'a> {
 }
 
 impl<'a> Instant<'a> {
-    pub fn new(about: &'a mut Linearised, places: Vec<usize>, value: f64, opens: bool) -> Self {
-        let dae = &mut about.dae;
-        dae.enter_smooth_interval(NOW);
+    /// A linearized state at rest; all signals are constant.
+    pub fn at_rest(about: &'a mut Linearised, places: Vec<usize>, value: f64, opens: bool) -> Self {
+        about.dae.enter_smooth_interval(0.0);
+        let mut instant = Self::new(&mut about.dae, places, Signal::Constant(value), opens);
+        instant.enter(0.0, [&about.y, &vec![0.0; about.y.len()]]);
+        instant
+    }
+
+    pub fn new(dae: &'a mut BeamDae, places: Vec<usize>, signal: Signal, opens: bool) -> Self {
         let system = dae.system();
         let probed = probes::columns(system).count();
         let rows = [
@@ -73,40 +79,54 @@ impl<'a> Instant<'a> {
             ObservableRow::new(vec![], [stations::columns(system, false).len(), 0]),
         ];
         Self {
-            yp: vec![0.0; about.y.len()],
-            y: about.y.clone(),
+            t: 0.0,
+            y: vec![],
+            yp: vec![],
             integrals: vec![0.0; dae.integrals()],
             dae,
             places,
-            value,
+            value: signal.value(0.0),
+            signal,
             opens,
             rows,
         }
     }
 
-    /// Sets the input to `value + x t^k/k!`.
+    /// Sets `c_j` of the steps [1/s], which the equations are formulated for.
+    pub fn approach(&mut self, cj: f64) {
+        self.dae.approach(cj);
+    }
+
+    /// Moves to a state with its rates at a time [s].
+    pub fn enter(&mut self, t: f64, [y, yp]: [&[f64]; 2]) {
+        (self.t, self.y, self.yp) = (t, y.to_vec(), yp.to_vec());
+        self.value = self.signal.jet(SmoothTime { t, within: self.dae.within() }).value;
+    }
+
+    /// Adds `x (τ - t)^k/k!` to the input at times τ.
     fn put(&mut self, k: usize, x: f64) {
+        let t = self.t;
         let coefficients = match k {
-            0 => vec![self.value + x],
-            1 => vec![self.value, x],
-            _ => vec![self.value, 0.0, 0.5 * x],
+            0 => vec![x],
+            1 => vec![-x * t, x],
+            _ => vec![0.5 * x * t * t, -x * t, 0.5 * x],
         };
-        let places = self.places.clone();
+        let added = Signal::Polynomial(Polynomial { coefficients });
         self.dae
-            .put_signal(&places, &Signal::Polynomial(Polynomial { coefficients }));
+            .put_signal(&self.places, &Signal::Sum(vec![self.signal.clone(), added]));
     }
 
     fn residual(&mut self) -> Vec<f64> {
         let mut values = vec![0.0; self.y.len()];
         // if the residual cannot be evaluated, the derivative and the solution are not finite
-        if self.dae.residual(NOW, &self.y, &self.yp, &mut values).is_err() {
+        if self.dae.residual(self.t, &self.y, &self.yp, &mut values).is_err() {
             values.fill(f64::NAN);
         }
         values
     }
 
     pub fn outputs(&mut self) -> Vec<f64> {
-        let (system, now, state) = self.dae.evaluate(NOW, &self.y, &self.yp);
+        let (system, now, state) = self.dae.evaluate(self.t, &self.y, &self.yp);
         let look = StateView {
             system,
             now,
@@ -115,8 +135,8 @@ impl<'a> Instant<'a> {
             at: Extremes::new(system, now, &state),
         };
         let [first, second] = &mut self.rows;
-        first.take(NOW, &look, &[], 0.0);
-        second.take(NOW, &look, &self.integrals, 0.0);
+        first.take(self.t, &look, &[], 0.0);
+        second.take(self.t, &look, &self.integrals, 0.0);
         first.values().iter().chain(second.values()).copied().collect()
     }
 
