@@ -67,7 +67,10 @@ impl ShiftedSolver {
         let mut x = vec![Complex::new(0.0, 0.0); b.len()];
         // the second pass corrects rounding errors of the first
         for _ in 0..2 {
-            let right = self.basis.iter().map(|q| q.iter().zip(&*residual).map(|(q, r)| r * *q).sum());
+            let right = self
+                .basis
+                .iter()
+                .map(|q| q.iter().zip(&*residual).map(|(q, r)| r * *q).sum());
             let y = lu.solve(&DVector::from_iterator(m, right))?;
             for ((q, image), y) in self.basis.iter().zip(&self.images).zip(y.iter()) {
                 for ((x, r), (q, image)) in x.iter_mut().zip(residual.iter_mut()).zip(q.iter().zip(image)) {

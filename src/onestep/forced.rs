@@ -102,7 +102,8 @@ impl<D: Dae> StepMap<D> {
             forcing.push(out);
             Ok(())
         })?;
-        let mut force = |slot: usize, out: &mut [f64]| out.iter_mut().zip(&forcing[slot]).for_each(|(out, f)| *out = -f);
+        let mut force =
+            |slot: usize, out: &mut [f64]| out.iter_mut().zip(&forcing[slot]).for_each(|(out, f)| *out = -f);
         self.carry(d, &mut force, &mut |_| {}, &mut |_, _| {});
         self.work.disturbances += 1;
         Ok(())

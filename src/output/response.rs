@@ -67,7 +67,11 @@ fn csv(found: &ResponseRecord) -> String {
         .collect();
     let row = |(k, f): (usize, &f64)| {
         let mut row = vec![shortest(*f)];
-        for Transfer { parts: [real, imag, error], .. } in &all {
+        for Transfer {
+            parts: [real, imag, error],
+            ..
+        } in &all
+        {
             let (re, im) = (real[k], imag[k]);
             row.extend([re, im, re.hypot(im), im.atan2(re).to_degrees()].map(shortest));
             row.extend(error.get(k).map(|error| shortest(*error)));
@@ -104,7 +108,11 @@ pub fn describe(found: &ResponseRecord) -> String {
     );
     text.push('\n');
     text += &sidebands(found);
-    let cause = if found.cycle.is_some() { "mesh and steps" } else { "the mesh" };
+    let cause = if found.cycle.is_some() {
+        "mesh and steps"
+    } else {
+        "the mesh"
+    };
     for curve in found.curves() {
         if let Some([median, largest]) = curve.errors(&found.frequency_hz) {
             let [median, largest] = [median, largest].map(error_percent);
@@ -143,7 +151,9 @@ fn row(curve: &ResponseCurve, peak: &ResponsePeak) -> [String; 7] {
 
 /// Table of the largest values of sidebands, if there are any.
 fn sidebands(found: &ResponseRecord) -> String {
-    let Some(cycle) = &found.cycle else { return String::new() };
+    let Some(cycle) = &found.cycle else {
+        return String::new();
+    };
     let row = |curve: &ResponseCurve, sideband: &ResponseSideband| {
         let [hz, size] = sideband.largest(&found.frequency_hz)?;
         let out = hz + f64::from(sideband.harmonic) / cycle.period_s;

@@ -35,9 +35,14 @@ fn in_time(case: &Value, output: &str, frequencies: &[f64], last: f64) -> Vec<Co
     let mut memory = Memory::default();
     let outcome = dynamics::run(&checked(case), &mut memory).unwrap();
     assert_eq!(outcome.summary.status, Status::Finished);
-    let (times, values) = (memory.column("time").unwrap(), memory.column(output).unwrap());
+    let (times, values) = (memory.column("t").unwrap(), memory.column(output).unwrap());
     let end = times.last().unwrap();
-    let window: Vec<(f64, f64)> = times.iter().copied().zip(values).filter(|(t, _)| *t > end - last + 1e-9).collect();
+    let window: Vec<(f64, f64)> = times
+        .iter()
+        .copied()
+        .zip(values)
+        .filter(|(t, _)| *t > end - last + 1e-9)
+        .collect();
     let of = |f: &f64| {
         let terms = window.iter().map(|(t, z)| Complex::from_polar(*z, -TAU * f * t));
         terms.sum::<Complex<f64>>() * (2.0 / window.len() as f64)
@@ -132,7 +137,9 @@ fn a_shaken_beam_answers_as_in_a_run() {
 #[test]
 fn a_wave_of_valves_transmits_in_one_direction() {
     let (hz, longest) = (31.5, 1.0 / 500.0);
-    let both = |case: &Value| [(LEFT, "right_u1"), (RIGHT, "left_u1")].map(|(input, output)| at(case, input, output, hz, longest));
+    let both = |case: &Value| {
+        [(LEFT, "right_u1"), (RIGHT, "left_u1")].map(|(input, output)| at(case, input, output, hz, longest))
+    };
     let still = modulated([0.1, 0.0, 5.0, 0.0]);
     let linear = [(LEFT, "right_u1"), (RIGHT, "left_u1")].map(|(input, output)| {
         let response = LinearResponse::new(&checked(&still), input, &[output.into()], None).unwrap();

@@ -65,7 +65,9 @@ impl DrivenCycle {
     pub fn find(case: &Case, input: &str, outputs: &[String], stop: &StopFlag) -> Result<Self> {
         System::new(case)?;
         let (case, input) = marked(case, input)?;
-        let mark = case::controls(&case).into_iter().find(|(pointer, ..)| *pointer == input);
+        let mark = case::controls(&case)
+            .into_iter()
+            .find(|(pointer, ..)| *pointer == input);
         let mark = mark.map(|(.., signal)| signal.clone()).unwrap_or(Signal::Constant(0.0));
         let mut model = whole(&case)?;
         let drive = drive(&case, &model, None)?;
@@ -75,12 +77,20 @@ impl DrivenCycle {
         let signal = product(if opens { settled_opening(&mark) } else { settled(&mark) });
         model.replace_signals(
             |one| if *one == mark { signal.clone() } else { settled(one) },
-            |one| if *one == mark { signal.clone() } else { settled_opening(one) },
+            |one| {
+                if *one == mark {
+                    signal.clone()
+                } else {
+                    settled_opening(one)
+                }
+            },
         );
         let mut scene = PeriodicScene::with_model(&case, model, drive)?.heeding(stop);
         let places = scene.system.places_of(&signal);
         if places.is_empty() {
-            return Err(Error::Usage(format!("--input {input}: nothing in the scene depends on it")));
+            return Err(Error::Usage(format!(
+                "--input {input}: nothing in the scene depends on it"
+            )));
         }
         let columns = columns(&scene.system);
         let chosen = outputs
@@ -280,7 +290,8 @@ impl CycleResponse {
             let stage = &stages[slot];
             let now = turn(w * stage.time);
             for ((all, [c, d]), direct) in values.iter_mut().zip(&stage.of_state).zip(&stage.direct) {
-                let sum = |row: &SparseVector, x: &[Complex<f64>]| row.iter().map(|(k, c)| x[*k] * *c).sum::<Complex<f64>>();
+                let sum =
+                    |row: &SparseVector, x: &[Complex<f64>]| row.iter().map(|(k, c)| x[*k] * *c).sum::<Complex<f64>>();
                 let of_input: Complex<f64> = direct.iter().zip(powers).map(|(d, power)| power * *d).sum();
                 let z = sum(c, x) + sum(d, rates) + now * of_input;
                 for (k, value) in all.iter_mut().enumerate() {

@@ -6,8 +6,8 @@ use super::motion;
 use crate::dae::{BeamDae, Dae as _};
 use crate::discrete::ledger;
 use crate::discrete::quantities::{Extremes, ObservableRow, StateView, probes, stations};
-use crate::functions::{Signal, SmoothTime};
 use crate::functions::signals::Polynomial;
+use crate::functions::{Signal, SmoothTime};
 use crate::integrate::halt;
 use crate::run::modes::Linearised;
 
@@ -60,6 +60,8 @@ pub struct Instant<'a> {
     opens: bool,
     rows: [ObservableRow; 2],
     integrals: Vec<f64>,
+    /// Unknowns, and rates, on which the outputs of [`Instant::rows`] depend.
+    known: [Vec<usize>; 2],
 }
 
 impl<'a> Instant<'a> {
@@ -89,6 +91,7 @@ impl<'a> Instant<'a> {
             signal,
             opens,
             rows,
+            known: [vec![], vec![]],
         }
     }
 
@@ -100,7 +103,13 @@ impl<'a> Instant<'a> {
     /// Moves to a state with its rates at a time [s].
     pub fn enter(&mut self, t: f64, [y, yp]: [&[f64]; 2]) {
         (self.t, self.y, self.yp) = (t, y.to_vec(), yp.to_vec());
-        self.value = self.signal.jet(SmoothTime { t, within: self.dae.within() }).value;
+        self.value = self
+            .signal
+            .jet(SmoothTime {
+                t,
+                within: self.dae.within(),
+            })
+            .value;
     }
 
     /// Adds `x (τ - t)^k/k!` to the input at times τ.
@@ -171,6 +180,14 @@ impl<'a> Instant<'a> {
     fn central(&mut self, k: usize, read: fn(&mut Self) -> Vec<f64>) -> Vec<f64> {
         let change = self.change(k);
         let unit = if change == 0.0 { 1.0 } else { 1.0 / change };
+        let largest = OF_INPUT[0] * unit;
+        let [before, after] = [-largest, largest].map(|x| {
+            self.put(k, x);
+            read(self)
+        });
+        if before == after {
+            return vec![0.0; before.len()];
+        }
         let quotients = OF_INPUT.map(|size| {
             let step = size * unit;
             let [before, after] = [-step, step].map(|x| {
@@ -213,11 +230,12 @@ impl<'a> Instant<'a> {
         let n = self.y.len();
         let mut rows = vec![[vec![0.0; n], vec![0.0; n]]; chosen.len()];
         for rate in [false, true] {
+            let mut known = std::mem::take(&mut self.known[usize::from(rate)]);
             // most outputs depend on few unknowns: ranges without influence are omitted, others halved
             let mut ranges: Vec<Range<usize>> = std::iter::once(0..n).collect();
             // the first solution reports an interrupted response
             while let Some(range) = ranges.pop().filter(|_| !halt::asked()) {
-                let first = self.over(&range, rate, OF_STATE[0], chosen);
+                let first = self.over(&range, rate, OF_STATE[0], chosen, &known);
                 if first.iter().all(|x| *x == 0.0) {
                     continue;
                 }
@@ -226,23 +244,29 @@ impl<'a> Instant<'a> {
                     ranges.extend([range.start..middle, middle..range.end]);
                     continue;
                 }
-                let quotients = OF_STATE.map(|step| self.over(&range, rate, step, chosen));
+                known.push(range.start);
+            }
+            for &unknown in &known {
+                let quotients = OF_STATE.map(|step| self.over(&(unknown..unknown + 1), rate, step, chosen, &[]));
                 for (row, limit) in rows.iter_mut().zip(limits(&quotients)) {
-                    row[usize::from(rate)][range.start] = limit;
+                    row[usize::from(rate)][unknown] = limit;
                 }
             }
+            self.known[usize::from(rate)] = known;
         }
         rows
     }
 
     /// Difference quotients of the chosen outputs over a range of unknowns, or of their rates. In a longer range the steps differ, so
-    /// that no influences cancel.
-    fn over(&mut self, range: &Range<usize>, rate: bool, step: f64, chosen: &[usize]) -> Vec<f64> {
+    /// that no influences cancel. Some unknowns may be left out.
+    fn over(&mut self, range: &Range<usize>, rate: bool, step: f64, chosen: &[usize], without: &[usize]) -> Vec<f64> {
         let [before, after] = [-step, step].map(|x| {
             let state = if rate { &mut self.yp } else { &mut self.y };
             let own = state[range.clone()].to_vec();
             for (k, value) in state[range.clone()].iter_mut().enumerate() {
-                *value += x / (1.0 + (GOLDEN * k as f64).fract());
+                if !without.contains(&(range.start + k)) {
+                    *value += x / (1.0 + (GOLDEN * k as f64).fract());
+                }
             }
             let values = self.outputs();
             let state = if rate { &mut self.yp } else { &mut self.y };

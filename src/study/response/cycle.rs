@@ -108,7 +108,12 @@ impl CycleRequest {
             match on_other {
                 Ok(on_other) => {
                     let more = difference(&coarse, &on_other, factor);
-                    for (error, more) in errors.iter_mut().flatten().flatten().zip(more.iter().flatten().flatten()) {
+                    for (error, more) in errors
+                        .iter_mut()
+                        .flatten()
+                        .flatten()
+                        .zip(more.iter().flatten().flatten())
+                    {
                         *error += more;
                     }
                 }
@@ -123,7 +128,10 @@ impl CycleRequest {
             let all = 0..=2 * self.harmonics;
             HarmonicCurves {
                 output: output.clone(),
-                values: all.clone().map(|k| samples.iter().map(|sample| sample[place][k]).collect()).collect(),
+                values: all
+                    .clone()
+                    .map(|k| samples.iter().map(|sample| sample[place][k]).collect())
+                    .collect(),
                 errors: all
                     .filter(|_| !errors.is_empty())
                     .map(|k| errors.iter().map(|error| error[place][k]).collect())
@@ -154,7 +162,13 @@ impl CycleRequest {
         // samples still to be added, the next one last
         let mut ahead = (0..points)
             .rev()
-            .map(|k| at(if k + 1 == points { to } else { from * (to / from).powf(k as f64 / intervals) }))
+            .map(|k| {
+                at(if k + 1 == points {
+                    to
+                } else {
+                    from * (to / from).powf(k as f64 / intervals)
+                })
+            })
             .collect::<Result<Vec<_>>>()?;
         let (mut frequencies, mut samples): (Vec<f64>, Vec<Sample>) = (vec![], vec![]);
         while let Some((hz, sample)) = ahead.pop() {
