@@ -315,6 +315,11 @@ const INDEX: &[(&str, &str, &str)] = &[
         "tests/periodic/self_oscillation.rs",
         "a_limit_cycle_is_the_end_of_a_long_run",
     ),
+    (
+        "[E99]",
+        "tests/periodic/harmonic.rs",
+        "a_shaken_beam_answers_as_in_a_run",
+    ),
 ];
 
 #[test]

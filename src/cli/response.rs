@@ -42,7 +42,7 @@ pub struct ResponseArguments {
     /// About the steady cycle of a case that loads, end motions or valves vary periodically
     #[arg(long, conflicts_with = "at")]
     pub about_cycle: bool,
-    /// Largest harmonic K: outputs at the input frequency plus -K to K times that of the cycle
+    /// Largest harmonic K: outputs at the input frequency plus -K to K times that of the cycle; 0: direct transmission only
     #[arg(long, value_name = "K", default_value_t = 1, requires = "about_cycle", value_parser = crate::cli::progress_line::count)]
     pub harmonics: usize,
     /// Folder, time limit and output.
