@@ -320,6 +320,11 @@ const INDEX: &[(&str, &str, &str)] = &[
         "tests/modes/response_derivatives.rs",
         "peaks_move_as_differences_of_the_command_say",
     ),
+    (
+        "[E99]",
+        "tests/periodic/harmonic.rs",
+        "a_shaken_beam_answers_as_in_a_run",
+    ),
     ("[E100]", "tests/periodic/backbone.rs", "a_clamped_strip_hardens"),
     (
         "[E101]",

@@ -6,6 +6,7 @@ mod check;
 mod coefficients;
 mod compare;
 mod completions;
+mod cycle_response;
 mod effects;
 pub mod embedded;
 mod equilibrium;

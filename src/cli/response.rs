@@ -6,7 +6,7 @@ use clap::Args;
 
 use super::arguments::{CaseArguments, ResultArguments, UncertainArguments};
 use super::uncertain::{self, Uncertain};
-use super::{resources, terminal};
+use super::{cycle_response, resources, terminal};
 use crate::case::parameter::Parameter;
 use crate::case::{Case, inherited};
 use crate::discrete::ledger::EnergyRate;
@@ -63,6 +63,12 @@ pub struct ResponseArguments {
     /// Uncertain numbers.
     #[command(flatten)]
     pub uncertain: UncertainArguments,
+    /// About the steady cycle of a case that loads, end motions or valves vary periodically
+    #[arg(long, conflicts_with_all = ["at", "frequency", "sensitivity", "power", "uncertain"])]
+    pub about_cycle: bool,
+    /// Largest harmonic K: outputs at the input frequency plus -K to K times that of the cycle; 0: direct transmission only
+    #[arg(long, value_name = "K", default_value_t = 1, requires = "about_cycle", value_parser = crate::cli::progress_line::count)]
+    pub harmonics: usize,
     /// Folder, time limit and output.
     #[command(flatten)]
     pub result: ResultArguments,
@@ -81,6 +87,9 @@ const MOST: usize = 100_000;
 /// Computes the response, writes the folder, prints the peaks.
 pub fn response(asked: &ResponseArguments) -> Result<ExitCode> {
     let request = request(asked)?;
+    if asked.about_cycle {
+        return cycle_response::response(asked, request);
+    }
     let frequencies = each_frequency(&asked.frequency)?;
     let case = resources::load(&asked.case)?;
     let parameters = Parameter::find_all(&case, &asked.sensitivity)?;
@@ -211,6 +220,7 @@ fn answer(case: &str, request: &Request, found: &BandResponse) -> Result<Respons
             Some(_) => LinearisedState::Equilibrium,
             None => LinearisedState::Start,
         },
+        cycle: None,
         at_s: about.at,
         unknowns: about.y.len(),
         frequency_hz: found.frequencies.clone(),
@@ -221,7 +231,13 @@ fn answer(case: &str, request: &Request, found: &BandResponse) -> Result<Respons
         sensitivities: Ordered::default(),
         warnings,
     };
-    let coarse = |curve: &ResponseCurve| {
+    answer.warnings.extend(coarse(&answer));
+    Ok(answer)
+}
+
+/// Warnings of outputs with a large error.
+pub fn coarse(answer: &ResponseRecord) -> Vec<String> {
+    let warning = |curve: &ResponseCurve| {
         let [median, _] = curve
             .errors(&answer.frequency_hz)
             .filter(|[median, _]| *median > LARGE)?;
@@ -231,9 +247,7 @@ fn answer(case: &str, request: &Request, found: &BandResponse) -> Result<Respons
             error_percent(median)
         )))
     };
-    let coarse: Vec<String> = answer.curves().filter_map(coarse).collect();
-    answer.warnings.extend(coarse);
-    Ok(answer)
+    answer.curves().filter_map(warning).collect()
 }
 
 fn curve(curve: &response::OutputResponse) -> ResponseCurve {
@@ -251,6 +265,7 @@ fn curve(curve: &response::OutputResponse) -> ResponseCurve {
         error: curve.errors.clone(),
         peaks: curve.peaks.iter().map(peak).collect(),
         at: vec![],
+        sidebands: vec![],
     }
 }
 

@@ -19,6 +19,7 @@
 //! | [`rng`], [`sobol`] | pseudo-random numbers, Sobol sequences |
 //! | [`normal`] | quantiles of the normal distribution |
 //! | [`krylov`] | linear systems and eigenvalues of a map given as a function |
+//! | [`shifted`] | linear systems of such a map with many complex shifts |
 //! | [`rational`] | rational functions through samples |
 
 pub mod angle;
@@ -37,6 +38,7 @@ pub mod regression;
 pub mod rng;
 pub mod scalar;
 pub mod sets;
+pub mod shifted;
 mod simd;
 pub mod sobol;
 pub mod sqp;

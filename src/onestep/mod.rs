@@ -13,8 +13,9 @@
 //! | [`tableau`] | the methods: coefficients, orders |
 //! | [`options`] | settings |
 //! | [`integrator`] | integrator, one accepted step at a time |
-//! | [`step_map`] | march over a fixed grid, and its exact derivative |
-//! | [`forced`] | derivative of a march by a parameter of the equations |
+//! | [`step_map`] | march over a fixed grid |
+//! | `disturbance` | derivative of a march by its beginning |
+//! | [`forced`] | response of a march to a forcing |
 //! | `stages` | Newton's iteration from stage to stage, and the error estimate |
 //! | `matrix` | Newton's matrix, its factors, and the criteria for renewing it |
 //! | `control` | step size control |
@@ -27,6 +28,7 @@
 
 mod control;
 mod dense;
+mod disturbance;
 mod equations;
 pub mod forced;
 pub mod integrator;

@@ -23,8 +23,6 @@ const ROUND_OFF: f64 = 1e-8;
 const ITERATIONS: usize = 25;
 /// Contraction rate above which old factors are replaced.
 const SLOW: f64 = 0.2;
-/// Number of disturbances propagated at once.
-const BLOCK: usize = 64;
 
 /// Receives the equations, the time [s] and the state at the end of every step.
 pub type StepWatcher<'a, D> = &'a mut dyn FnMut(&mut D, f64, &[f64]);
@@ -81,11 +79,11 @@ impl AddAssign for StepMapWork {
 
 /// The matrix of one stage.
 pub(super) struct StageMatrix {
-    klu: Klu,
+    pub(super) klu: Klu,
     /// True if it contains factors.
     factored: bool,
     /// `∂F/∂y` at the solution, in the order of the pattern.
-    of_y: Vec<f64>,
+    pub(super) of_y: Vec<f64>,
     /// Rates of differential, values of algebraic unknowns.
     pub(super) x: Vec<f64>,
 }
@@ -301,91 +299,6 @@ impl<D: Dae> StepMap<D> {
         let of_y = std::mem::take(&mut self.slots[0].of_y);
         self.slots[0].of_y = self.of_y(t, y, yp, of_y)?;
         Ok(())
-    }
-
-    /// `[E36]` Propagates disturbances of the differential unknowns from the first to the last time along the last march. `block`
-    /// contains them one after the other, each with an entry for every unknown. Entries of algebraic unknowns are ignored and returned as
-    /// zero.
-    ///
-    /// ```text
-    /// ∂F/∂y δYᵢ + ∂F/∂y' δKᵢ = 0     δYᵢ = δyₙ + h Σⱼ aᵢⱼ δKⱼ     δyₙ₊₁ = δYₛ
-    /// (∂F/∂y + 1/(hγ) ∂F/∂y') hγ δKᵢ = -∂F/∂y (δyₙ + h Σ_{j<i} aᵢⱼ δKⱼ)
-    /// ```
-    ///
-    /// These are the differentiated stages of [`super`]: exact for the steps taken, not for the flow they approximate.
-    pub fn propagate(&mut self, block: &mut [f64]) {
-        let n = self.mask.len();
-        assert!(block.len().is_multiple_of(n), "disturbances of another system");
-        self.work.disturbances += (block.len() / n) as u64;
-        for part in block.chunks_mut(n * BLOCK) {
-            self.carry_part(part, &mut |_| {});
-        }
-    }
-
-    /// Like [`StepMap::propagate`], for a few disturbances; `look` receives them at the beginning and at the end of every step.
-    pub fn propagate_by_steps(&mut self, block: &mut [f64], look: &mut dyn FnMut(&[f64])) {
-        let n = self.mask.len();
-        let count = block.len() / n;
-        assert!(
-            block.len() == count * n && count <= BLOCK,
-            "disturbances of another system, or too many"
-        );
-        self.work.disturbances += count as u64;
-        self.carry_part(block, look);
-    }
-
-    fn carry_part(&mut self, d: &mut [f64], look: &mut dyn FnMut(&[f64])) {
-        let s = self.tableau.stages;
-        let keep = |mask: &[f64], v: &mut [f64]| {
-            for column in v.chunks_mut(mask.len()) {
-                column.iter_mut().zip(mask).for_each(|(v, m)| *v *= m);
-            }
-        };
-        keep(&self.mask, d);
-        look(d);
-        let mut k: Vec<Vec<f64>> = vec![vec![0.0; d.len()]; s];
-        self.respond(0, d, &mut k[0]);
-        keep(&self.mask, &mut k[0]);
-        let mut base = vec![0.0; d.len()];
-        for step in 0..self.times.len() - 1 {
-            let h = self.times[step + 1] - self.times[step];
-            let scale = h * self.tableau.gamma();
-            for i in 1..s {
-                base.copy_from_slice(d);
-                for (j, k) in k.iter().enumerate().take(i) {
-                    add(&mut base, h * self.tableau.a[i][j], k);
-                }
-                self.respond(1 + step * (s - 1) + i - 1, &base, &mut k[i]);
-                keep(&self.mask, &mut k[i]);
-                k[i].iter_mut().for_each(|k| *k /= scale);
-            }
-            d.copy_from_slice(&base);
-            add(d, scale, &k[s - 1]);
-            look(d);
-            k.swap(0, s - 1);
-        }
-    }
-
-    /// `out = -A⁻¹ ∂F/∂y v` of a slot, for every column.
-    fn respond(&mut self, slot: usize, v: &[f64], out: &mut [f64]) {
-        out.fill(0.0);
-        self.answer(slot, v, out);
-    }
-
-    /// `out = A⁻¹ (out - ∂F/∂y v)` of a slot, for every column.
-    pub(super) fn answer(&mut self, slot: usize, v: &[f64], out: &mut [f64]) {
-        let n = self.mask.len();
-        let slot = &mut self.slots[slot];
-        let pattern = self.equations.dae.pattern();
-        for (out, v) in out.chunks_mut(n).zip(v.chunks(n)) {
-            for (column, v) in v.iter().enumerate().filter(|(_, v)| **v != 0.0) {
-                for entry in pattern.column(column) {
-                    out[pattern.rows[entry] as usize] -= slot.of_y[entry] * v;
-                }
-            }
-        }
-        slot.klu.solve_block(out);
-        self.work.linear_solves += (v.len() / n) as u64;
     }
 }
 

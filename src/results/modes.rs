@@ -15,6 +15,8 @@ pub enum LinearisedState {
     Start,
     /// The equilibrium under the loads of an instant.
     Equilibrium,
+    /// A steady cycle.
+    Cycle,
 }
 
 /// Modes of a case.

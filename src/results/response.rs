@@ -15,6 +15,9 @@ pub struct ResponseRecord {
     pub input: String,
     /// State of linearization.
     pub state: LinearisedState,
+    /// Cycle of linearization, if it is one.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub cycle: Option<ResponseCycle>,
     /// Instant of loads and valves [s].
     pub at_s: f64,
     /// Unknowns.
@@ -66,6 +69,43 @@ impl ResponseRecord {
     }
 }
 
+/// Cycle about which a response is computed.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct ResponseCycle {
+    /// Period [s].
+    pub period_s: f64,
+    /// Steps in a period.
+    pub steps: usize,
+    /// Largest relative residual of the equations for the motion at the start of a period.
+    pub residual: f64,
+    /// Largest modulus of a multiplier of the cycle; absent if all disturbances vanish within a period.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub largest_multiplier: Option<f64>,
+}
+
+/// Transfer function from exp(i ω t) to exp(i (ω + k Ω) t), Ω the frequency of the cycle.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct ResponseSideband {
+    /// k, not 0.
+    pub harmonic: i32,
+    /// Real part at each frequency.
+    pub real: Vec<f64>,
+    /// Imaginary part at each frequency.
+    pub imag: Vec<f64>,
+    /// Estimated absolute error by mesh and steps at each frequency; absent if unknown.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub error: Vec<f64>,
+}
+
+impl ResponseSideband {
+    /// Frequency [Hz] and amplitude of the largest value.
+    pub fn largest(&self, frequencies: &[f64]) -> Option<[f64; 2]> {
+        let sizes = self.real.iter().zip(&self.imag).map(|(re, im)| re.hypot(*im));
+        let all = frequencies.iter().zip(sizes).map(|(hz, size)| [*hz, size]);
+        all.max_by(|a, b| a[1].total_cmp(&b[1]))
+    }
+}
+
 /// Transfer function to an output, in its unit over that of the input, for exp(i ω t).
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ResponseCurve {
@@ -77,7 +117,7 @@ pub struct ResponseCurve {
     pub real: Vec<f64>,
     /// Imaginary part at each frequency.
     pub imag: Vec<f64>,
-    /// Estimated absolute error by the mesh at each frequency; absent if unknown.
+    /// Estimated absolute error by the mesh at each frequency, about a cycle also by the steps; absent if unknown.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub error: Vec<f64>,
     /// Local maxima of the amplitude.
@@ -85,6 +125,9 @@ pub struct ResponseCurve {
     /// Values at requested frequencies.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub at: Vec<ResponseValue>,
+    /// Sidebands of a response about a cycle, in ascending order of k.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub sidebands: Vec<ResponseSideband>,
 }
 
 impl ResponseCurve {

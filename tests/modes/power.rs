@@ -43,7 +43,10 @@ fn a_small_cycle_has_the_mean_powers_of_the_response() {
         ] {
             let mean = found[name].value * hz / (amplitude * amplitude);
             println!("{hz} Hz {name}: {mean:.6e} {linear:.6e}");
-            assert!((mean / linear - 1.0).abs() < 1e-4, "{hz} Hz {name}: {mean} for {linear}");
+            assert!(
+                (mean / linear - 1.0).abs() < 1e-4,
+                "{hz} Hz {name}: {mean} for {linear}"
+            );
         }
     }
 }
@@ -65,7 +68,12 @@ fn mean_powers_add_up() {
         for (hz, powers) in frequencies.iter().zip(of(&case, input, &frequencies)) {
             let residual = powers.residual() / powers.input();
             assert!(residual.abs() < 1e-6, "{input} {hz} Hz: {residual:e} {powers:?}");
-            for rate in [EnergyRate::Turbines, EnergyRate::Bladders, EnergyRate::Tubes, EnergyRate::Damping] {
+            for rate in [
+                EnergyRate::Turbines,
+                EnergyRate::Bladders,
+                EnergyRate::Tubes,
+                EnergyRate::Damping,
+            ] {
                 assert!(powers.of(rate) >= -1e-9 * powers.input(), "{input} {hz} Hz: {powers:?}");
             }
         }

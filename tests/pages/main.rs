@@ -106,6 +106,10 @@ fn shortened(line: &str) -> Option<String> {
     if line.contains("--map") {
         line = with(&with(&line, "--points", "2,2"), "--permeability", "1");
     }
+    if line.contains("--about-cycle") {
+        line = with(&with(&line, "--points", "2"), "--to", "30.5");
+        line += " --set /mesh/cells_per_segment=1 --set /mesh/cells_per_bladder=1";
+    }
     // 0.01:1:25:log
     if let Some((_, range)) = line.split_once("--sweep ")
         && let Some(count) = range.split(' ').next().and_then(|r| r.split(':').nth(2))

@@ -67,7 +67,7 @@ fn strip(held: bool, cells: usize, force: f64, near_hz: f64) -> Case {
 #[test]
 fn a_clamped_strip_hardens() {
     let of = |cells: usize| {
-        let found = over_amplitudes("/loads/0/force_x_n_m/signal", &[3e-7, 3e-6], &|force| {
+        let found = over_amplitudes("/loads/0/force_x_n_m/signal", &[1e-7, 1e-6], &|force| {
             strip(true, cells, force, 4.5)
         });
         hardening(&found, "midspan_u1_m", 1e-3)

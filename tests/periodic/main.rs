@@ -4,6 +4,7 @@ mod backbone;
 mod branch;
 mod command;
 mod floquet;
+mod harmonic;
 mod self_oscillation;
 mod shooting;
 mod subharmonic;

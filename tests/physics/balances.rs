@@ -163,6 +163,7 @@ fn balances_of_networks_close() {
         ("bladder-pump", 0.1),
         ("syringe-finger", 0.5),
         ("metamaterial", 0.2),
+        ("modulated-metamaterial", 0.2),
         ("raised-tank", 1.0),
     ] {
         closes(name, end);

@@ -171,7 +171,8 @@ def response(
 
     :param input: JSON pointer of a signal of the case.
     :param output: one or several quantities or probes.
-    :param options: ``from_=HZ``, ``to=HZ``, ``points``, ``at=SECONDS``, ``frequency=[HZ, ...]``, ``sensitivity=[POINTER, ...]``, ..
+    :param options: ``from_=HZ``, ``to=HZ``, ``points``, ``at=SECONDS``, ``about_cycle=True``, ``harmonics=K``, ``power=True``,
+        ``frequency=[HZ, ...]``, ``sensitivity=[POINTER, ...]``, ..
     :returns: ``response.json``; ``tables["response"]``.
 
     >>> import slcbeam

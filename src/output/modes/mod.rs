@@ -68,6 +68,7 @@ impl Report<'_> {
         match self.state {
             LinearisedState::Start => "the start".into(),
             LinearisedState::Equilibrium => format!("the equilibrium under the loads at t = {} s", self.found.about.at),
+            LinearisedState::Cycle => "the cycle".into(),
         }
     }
 

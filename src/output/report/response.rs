@@ -70,6 +70,11 @@ pub fn data(place: &Place) -> Result<Page> {
     let at = match found.state {
         LinearisedState::Start => String::new(),
         LinearisedState::Equilibrium => format!(" --at {}", found.at_s),
+        LinearisedState::Cycle => {
+            let all = found.curves().flat_map(|curve| &curve.sidebands);
+            let most = all.map(|sideband| sideband.harmonic).max().unwrap_or(1);
+            format!(" --about-cycle --harmonics {most}")
+        }
     };
     page.put(
         "command",

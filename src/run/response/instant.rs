@@ -6,8 +6,8 @@ use super::motion;
 use crate::dae::{BeamDae, Dae as _};
 use crate::discrete::ledger;
 use crate::discrete::quantities::{Extremes, ObservableRow, StateView, probes, stations};
-use crate::functions::Signal;
 use crate::functions::signals::Polynomial;
+use crate::functions::{Signal, SmoothTime};
 use crate::integrate::halt;
 use crate::run::modes::Linearised;
 
@@ -46,26 +46,34 @@ fn limits(quotients: &[Vec<f64>]) -> Vec<f64> {
     (0..quotients[0].len()).map(of).collect()
 }
 
-/// Time of evaluation [s]: all signals are constant, and at 0 a polynomial of the input has its value without rounding.
-pub const NOW: f64 = 0.0;
-
-/// A state with an input that can be varied about it.
+/// A state at an instant, with an input that can be varied about its signal.
 pub struct Instant<'a> {
     dae: &'a mut BeamDae,
+    /// Time [s]. At 0 a polynomial of the input has its value without rounding.
+    t: f64,
     y: Vec<f64>,
     yp: Vec<f64>,
     places: Vec<usize>,
+    signal: Signal,
     /// Value of the input. `opens` is true if it is an opening, which is limited to 0 to 1.
     value: f64,
     opens: bool,
     rows: [ObservableRow; 2],
     integrals: Vec<f64>,
+    /// Unknowns, and rates, on which the outputs of [`Instant::rows`] depend.
+    known: [Vec<usize>; 2],
 }
 
 impl<'a> Instant<'a> {
-    pub fn new(about: &'a mut Linearised, places: Vec<usize>, value: f64, opens: bool) -> Self {
-        let dae = &mut about.dae;
-        dae.enter_smooth_interval(NOW);
+    /// A linearized state at rest; all signals are constant.
+    pub fn at_rest(about: &'a mut Linearised, places: Vec<usize>, value: f64, opens: bool) -> Self {
+        about.dae.enter_smooth_interval(0.0);
+        let mut instant = Self::new(&mut about.dae, places, Signal::Constant(value), opens);
+        instant.enter(0.0, [&about.y, &vec![0.0; about.y.len()]]);
+        instant
+    }
+
+    pub fn new(dae: &'a mut BeamDae, places: Vec<usize>, signal: Signal, opens: bool) -> Self {
         let system = dae.system();
         let probed = probes::columns(system).count();
         let rows = [
@@ -73,40 +81,61 @@ impl<'a> Instant<'a> {
             ObservableRow::new(vec![], [stations::columns(system, false).len(), 0]),
         ];
         Self {
-            yp: vec![0.0; about.y.len()],
-            y: about.y.clone(),
+            t: 0.0,
+            y: vec![],
+            yp: vec![],
             integrals: vec![0.0; dae.integrals()],
             dae,
             places,
-            value,
+            value: signal.value(0.0),
+            signal,
             opens,
             rows,
+            known: [vec![], vec![]],
         }
     }
 
-    /// Sets the input to `value + x t^k/k!`.
+    /// Sets `c_j` of the steps [1/s], which the equations are formulated for.
+    pub fn approach(&mut self, cj: f64) {
+        self.dae.approach(cj);
+    }
+
+    /// Moves to a state with its rates at a time [s].
+    pub fn enter(&mut self, t: f64, [y, yp]: [&[f64]; 2]) {
+        (self.t, self.y, self.yp) = (t, y.to_vec(), yp.to_vec());
+        self.value = self
+            .signal
+            .jet(SmoothTime {
+                t,
+                within: self.dae.within(),
+            })
+            .value;
+    }
+
+    /// Adds `x (τ - t)^k/k!` to the input at times τ.
     fn put(&mut self, k: usize, x: f64) {
+        let t = self.t;
         let coefficients = match k {
-            0 => vec![self.value + x],
-            1 => vec![self.value, x],
-            _ => vec![self.value, 0.0, 0.5 * x],
+            0 => vec![x],
+            1 => vec![-x * t, x],
+            _ => vec![0.5 * x * t * t, -x * t, 0.5 * x],
         };
-        let places = self.places.clone();
+        let added = Signal::Polynomial(Polynomial { coefficients });
         self.dae
-            .put_signal(&places, &Signal::Polynomial(Polynomial { coefficients }));
+            .put_signal(&self.places, &Signal::Sum(vec![self.signal.clone(), added]));
     }
 
     fn residual(&mut self) -> Vec<f64> {
         let mut values = vec![0.0; self.y.len()];
         // if the residual cannot be evaluated, the derivative and the solution are not finite
-        if self.dae.residual(NOW, &self.y, &self.yp, &mut values).is_err() {
+        if self.dae.residual(self.t, &self.y, &self.yp, &mut values).is_err() {
             values.fill(f64::NAN);
         }
         values
     }
 
     pub fn outputs(&mut self) -> Vec<f64> {
-        let (system, now, state) = self.dae.evaluate(NOW, &self.y, &self.yp);
+        let (system, now, state) = self.dae.evaluate(self.t, &self.y, &self.yp);
         let look = StateView {
             system,
             now,
@@ -115,8 +144,8 @@ impl<'a> Instant<'a> {
             at: Extremes::new(system, now, &state),
         };
         let [first, second] = &mut self.rows;
-        first.take(NOW, &look, &[], 0.0);
-        second.take(NOW, &look, &self.integrals, 0.0);
+        first.take(self.t, &look, &[], 0.0);
+        second.take(self.t, &look, &self.integrals, 0.0);
         first.values().iter().chain(second.values()).copied().collect()
     }
 
@@ -151,6 +180,14 @@ impl<'a> Instant<'a> {
     fn central(&mut self, k: usize, read: fn(&mut Self) -> Vec<f64>) -> Vec<f64> {
         let change = self.change(k);
         let unit = if change == 0.0 { 1.0 } else { 1.0 / change };
+        let largest = OF_INPUT[0] * unit;
+        let [before, after] = [-largest, largest].map(|x| {
+            self.put(k, x);
+            read(self)
+        });
+        if before == after {
+            return vec![0.0; before.len()];
+        }
         let quotients = OF_INPUT.map(|size| {
             let step = size * unit;
             let [before, after] = [-step, step].map(|x| {
@@ -193,11 +230,12 @@ impl<'a> Instant<'a> {
         let n = self.y.len();
         let mut rows = vec![[vec![0.0; n], vec![0.0; n]]; chosen.len()];
         for rate in [false, true] {
+            let mut known = std::mem::take(&mut self.known[usize::from(rate)]);
             // most outputs depend on few unknowns: ranges without influence are omitted, others halved
             let mut ranges: Vec<Range<usize>> = std::iter::once(0..n).collect();
             // the first solution reports an interrupted response
             while let Some(range) = ranges.pop().filter(|_| !halt::asked()) {
-                let first = self.over(&range, rate, OF_STATE[0], chosen);
+                let first = self.over(&range, rate, OF_STATE[0], chosen, &known);
                 if first.iter().all(|x| *x == 0.0) {
                     continue;
                 }
@@ -206,23 +244,29 @@ impl<'a> Instant<'a> {
                     ranges.extend([range.start..middle, middle..range.end]);
                     continue;
                 }
-                let quotients = OF_STATE.map(|step| self.over(&range, rate, step, chosen));
+                known.push(range.start);
+            }
+            for &unknown in &known {
+                let quotients = OF_STATE.map(|step| self.over(&(unknown..unknown + 1), rate, step, chosen, &[]));
                 for (row, limit) in rows.iter_mut().zip(limits(&quotients)) {
-                    row[usize::from(rate)][range.start] = limit;
+                    row[usize::from(rate)][unknown] = limit;
                 }
             }
+            self.known[usize::from(rate)] = known;
         }
         rows
     }
 
     /// Difference quotients of the chosen outputs over a range of unknowns, or of their rates. In a longer range the steps differ, so
-    /// that no influences cancel.
-    fn over(&mut self, range: &Range<usize>, rate: bool, step: f64, chosen: &[usize]) -> Vec<f64> {
+    /// that no influences cancel. Some unknowns may be left out.
+    fn over(&mut self, range: &Range<usize>, rate: bool, step: f64, chosen: &[usize], without: &[usize]) -> Vec<f64> {
         let [before, after] = [-step, step].map(|x| {
             let state = if rate { &mut self.yp } else { &mut self.y };
             let own = state[range.clone()].to_vec();
             for (k, value) in state[range.clone()].iter_mut().enumerate() {
-                *value += x / (1.0 + (GOLDEN * k as f64).fract());
+                if !without.contains(&(range.start + k)) {
+                    *value += x / (1.0 + (GOLDEN * k as f64).fract());
+                }
             }
             let values = self.outputs();
             let state = if rate { &mut self.yp } else { &mut self.y };

@@ -11,6 +11,7 @@
 //! One complex factorization serves all outputs at a frequency. Rates of u appear if an input moves an end, since the displacements
 //! of the beam are relative to it.
 
+pub mod cycle;
 mod instant;
 pub mod power;
 pub mod sensitivity;
@@ -80,7 +81,7 @@ impl LinearResponse {
             ..
         } = found;
         let value = signal.jet(about.clock()).value;
-        let mut instant = Instant::new(&mut about, places.clone(), value, input.contains("/opening"));
+        let mut instant = Instant::at_rest(&mut about, places.clone(), value, input.contains("/opening"));
         let forcing = instant.derivatives_of_residual();
         let direct = instant.derivatives_of_outputs(&chosen);
         let of_state = instant.rows(&chosen);

@@ -3,12 +3,13 @@
 use nalgebra::Complex;
 
 use super::LinearResponse;
-use super::instant::NOW;
 use crate::dae::{BeamDae, Dae as _};
 use crate::discrete::ledger::{ENERGY_RATES, EnergyRate};
 use crate::functions::Signal;
 use crate::functions::signals::Polynomial;
 
+/// Time of evaluation [s]: at 0 a polynomial of the input has its value without rounding.
+const NOW: f64 = 0.0;
 /// Largest scaled amplitude at which powers are evaluated: they are quadratic to its square, and far above rounding.
 const AMPLITUDE: f64 = 1e-4;
 

@@ -1,6 +1,7 @@
 //! Frequency responses over a band: peaks, poles, and errors by the meshes.
 
 pub mod approximation;
+pub mod cycle;
 pub mod derivatives;
 mod peaks;
 pub mod power;

@@ -14,7 +14,7 @@ use crate::run::response::sensitivity::ResponseJet;
 use crate::study::in_halves;
 
 /// Part of the largest amplitude below which a local maximum is a rounding error.
-const NOISE: f64 = 1e-6;
+pub(super) const NOISE: f64 = 1e-6;
 /// Part of an amplitude by which a peak must exceed its neighbors.
 const FLAT: f64 = 1e-9;
 /// Golden-section steps of the search for a peak; each leaves 0.62 of the interval.

@@ -1,22 +1,22 @@
 //! Files of a frequency response: `response.csv`, `response.json`, `response.svg`, and its text.
 
+mod picture;
+
 use std::fmt::Write as _;
 use std::path::PathBuf;
 
+pub use self::picture::overlay;
+use self::picture::{nyquist, picture};
 use super::columns::{table, warnings};
 use super::folder::ResultFolder;
 use super::numbers::{counted, shortest, significant};
-use super::plot::canvas::LineStyle;
-use super::plot::colour::{Colour, PALETTE};
-use super::plot::extent;
-use super::plot::picture::{Panel, Picture, PictureAxis, PictureSeries};
 use super::records;
 use crate::error::Result;
 use crate::error::numbers::error_percent;
 use crate::results;
 use crate::results::response::{
     ComparedResponses, NamedResponse, PowerCurve, ResponseCurve, ResponseDerivatives, ResponsePeak, ResponseRecord,
-    ResponseValue,
+    ResponseSideband, ResponseValue,
 };
 
 /// One row per frequency.
@@ -28,20 +28,51 @@ pub const PICTURE: &str = "response.svg";
 /// Responses in the complex plane.
 pub const NYQUIST: &str = "nyquist.svg";
 
+/// A transfer function with its name, unit and values: real part, imaginary part, errors.
+struct Transfer<'a> {
+    name: String,
+    hz: &'a [f64],
+    unit: &'a str,
+    parts: [&'a [f64]; 3],
+}
+
+/// Transfer functions of all outputs; the direct one of each precedes its sidebands.
+fn transfers(found: &ResponseRecord) -> Vec<Transfer<'_>> {
+    let mut all = vec![];
+    let hz = &found.frequency_hz[..];
+    for curve in found.curves() {
+        let unit = curve.unit.as_str();
+        all.push(Transfer {
+            name: curve.output.clone(),
+            hz,
+            unit,
+            parts: [&curve.real, &curve.imag, &curve.error],
+        });
+        all.extend(curve.sidebands.iter().map(|sideband| Transfer {
+            name: format!("{} {:+}", curve.output, sideband.harmonic),
+            hz,
+            unit,
+            parts: [&sideband.real, &sideband.imag, &sideband.error],
+        }));
+    }
+    all
+}
+
 /// The text of `response.csv`.
 fn csv(found: &ResponseRecord) -> String {
-    let columns = |curve: &ResponseCurve| {
-        let (name, unit) = (&curve.output, &curve.unit);
-        let parts = ["real", "imaginary", "amplitude"].map(|part| format!("{part} {name} [{unit}/input]"));
-        let error = (!curve.error.is_empty()).then(|| format!("error {name} [{unit}/input]"));
-        parts
+    let all = transfers(found);
+    let columns = |transfer: &Transfer| {
+        let Transfer { name, unit, parts, .. } = transfer;
+        let values = ["real", "imaginary", "amplitude"].map(|part| format!("{part} {name} [{unit}/input]"));
+        let error = (!parts[2].is_empty()).then(|| format!("error {name} [{unit}/input]"));
+        values
             .into_iter()
             .chain([format!("phase {name} [deg]")])
             .chain(error)
             .collect::<Vec<_>>()
     };
     let headings: Vec<String> = std::iter::once("frequency [Hz]".into())
-        .chain(found.curves().flat_map(columns))
+        .chain(all.iter().flat_map(columns))
         .chain(
             found
                 .powers
@@ -51,10 +82,14 @@ fn csv(found: &ResponseRecord) -> String {
         .collect();
     let row = |(k, f): (usize, &f64)| {
         let mut row = vec![shortest(*f)];
-        for curve in found.curves() {
-            let (re, im) = (curve.real[k], curve.imag[k]);
+        for Transfer {
+            parts: [real, imag, error],
+            ..
+        } in &all
+        {
+            let (re, im) = (real[k], imag[k]);
             row.extend([re, im, re.hypot(im), im.atan2(re).to_degrees()].map(shortest));
-            row.extend(curve.error.get(k).map(|error| shortest(*error)));
+            row.extend(error.get(k).map(|error| shortest(*error)));
         }
         row.extend(found.powers.iter().map(|curve| shortest(curve.mean_w[k])));
         row
@@ -96,18 +131,34 @@ pub fn describe(found: &ResponseRecord) -> String {
         text += &table(" | <output | frequency [Hz] | amplitude | [dB] | phase [°]", at);
         text.push('\n');
     }
+    text += &sidebands(found);
+    let cause = if found.cycle.is_some() {
+        "mesh and steps"
+    } else {
+        "the mesh"
+    };
     for curve in found.curves() {
         if let Some([median, largest]) = curve.errors(&found.frequency_hz) {
             let [median, largest] = [median, largest].map(error_percent);
             let _ = writeln!(
                 text,
-                "error of {} by the mesh: {median} in the median over frequencies; at most {largest} of the largest amplitude",
+                "error of {} by {cause}: {median} in the median over frequencies; at most {largest} of the largest amplitude",
                 curve.output
             );
         }
     }
     text += &powers(found);
-    let _ = writeln!(text, "{} found in the band", counted(found.poles.len() as u64, "pole"));
+    if let Some(cycle) = &found.cycle {
+        let _ = writeln!(
+            text,
+            "cycle of {} Hz: {}, residual {:.0e}",
+            significant(1.0 / cycle.period_s, 4),
+            counted(cycle.steps as u64, "step"),
+            cycle.residual
+        );
+    } else {
+        let _ = writeln!(text, "{} found in the band", counted(found.poles.len() as u64, "pole"));
+    }
     for (pointer, slopes) in &found.sensitivities.0 {
         text += &derivatives(found, pointer, slopes);
     }
@@ -194,6 +245,34 @@ fn row(curve: &ResponseCurve, peak: &ResponsePeak) -> [String; 7] {
     ]
 }
 
+/// Table of the largest values of sidebands, if there are any.
+fn sidebands(found: &ResponseRecord) -> String {
+    let Some(cycle) = &found.cycle else {
+        return String::new();
+    };
+    let row = |curve: &ResponseCurve, sideband: &ResponseSideband| {
+        let [hz, size] = sideband.largest(&found.frequency_hz)?;
+        let out = hz + f64::from(sideband.harmonic) / cycle.period_s;
+        Some([
+            String::new(),
+            curve.output.clone(),
+            format!("{:+}", sideband.harmonic),
+            significant(hz, 7),
+            significant(out.abs(), 7),
+            significant(size, 5),
+            format!("{:.2}", 20.0 * size.log10()),
+        ])
+    };
+    let rows = found
+        .curves()
+        .flat_map(|curve| curve.sidebands.iter().filter_map(move |sideband| row(curve, sideband)));
+    let rows: Vec<[String; 7]> = rows.collect();
+    table(
+        " | <sideband | harmonic | input [Hz] | output [Hz] | amplitude | [dB]",
+        rows,
+    ) + "\n"
+}
+
 /// Writes the files into a folder.
 ///
 /// # Errors
@@ -204,105 +283,6 @@ pub fn write(folder: &mut ResultFolder, found: &ResponseRecord) -> Result<Vec<Pa
         files.extend(picture.and_then(|picture| picture.svg()).map(|text| (name, text)));
     }
     folder.fill(files)
-}
-
-/// Largest distance of a drawn amplitude from the median [dB]: undamped poles and zeros are unbounded.
-const AROUND: f64 = 100.0;
-
-/// Picture of amplitude, phase and mean powers over frequency.
-fn picture(found: &ResponseRecord) -> Option<Picture> {
-    let curves: Vec<_> = found
-        .curves()
-        .map(|curve| (curve.output.clone(), &found.frequency_hz[..], curve))
-        .collect();
-    let mut panels = bode(&curves)?;
-    let power = |(curve, colour): (&PowerCurve, &Colour)| {
-        let points = found.frequency_hz.iter().copied().zip(curve.mean_w.iter().copied());
-        let points: Vec<_> = points.filter(|(_, power)| *power > 0.0).collect();
-        PictureSeries::line(points, LineStyle::solid(*colour, 1.6)).named(curve.power.replace('_', " "))
-    };
-    let powers: Vec<_> = found.powers.iter().zip(PALETTE.iter().cycle()).map(power).collect();
-    if !powers.is_empty() {
-        let axis = PictureAxis::new("mean power", "W/input²", 5).logarithmic(true);
-        panels.push(Panel::new((620.0, 200.0), panels[0].x.clone(), axis, powers));
-    }
-    let title = format!("{} · frequency response", found.case);
-    Some(Picture::stacked(title, format!("to {}", found.input), panels))
-}
-
-/// Picture of the responses of several results.
-pub fn overlay(all: &ComparedResponses) -> Option<Picture> {
-    let of = |one: &NamedResponse| {
-        let several = !one.response.further.is_empty();
-        let named = |curve: &ResponseCurve| match several {
-            true => format!("{}: {}", one.folder, curve.output),
-            false => one.folder.clone(),
-        };
-        one.response.curves().map(named).collect::<Vec<_>>()
-    };
-    let names = all.results.iter().flat_map(of);
-    let curves = all.results.iter().flat_map(|one| {
-        let hz = &one.response.frequency_hz[..];
-        one.response.curves().map(move |curve| (hz, curve))
-    });
-    let curves: Vec<_> = names.zip(curves).map(|(name, (hz, curve))| (name, hz, curve)).collect();
-    let mut inputs: Vec<&str> = all.results.iter().map(|one| one.response.input.as_str()).collect();
-    inputs.dedup();
-    let title = "frequency responses".to_owned();
-    Some(Picture::stacked(
-        title,
-        format!("to {}", inputs.join(", ")),
-        bode(&curves)?,
-    ))
-}
-
-/// Panels of amplitude and phase of curves with names and frequencies.
-fn bode(curves: &[(String, &[f64], &ResponseCurve)]) -> Option<Vec<Panel>> {
-    let band = extent(curves.iter().flat_map(|(_, hz, _)| hz.iter().copied()))?;
-    let x = || {
-        PictureAxis::new("frequency", "Hz", 8)
-            .between(band.0, band.1)
-            .logarithmic(true)
-    };
-    let decibel = |curve: &ResponseCurve| -> Vec<f64> {
-        let parts = curve.real.iter().zip(&curve.imag);
-        parts.map(|(re, im)| 20.0 * re.hypot(*im).log10()).collect()
-    };
-    let (mut amplitudes, mut phases) = (vec![], vec![]);
-    extent(curves.iter().flat_map(|(.., curve)| decibel(curve)))?;
-    for ((name, hz, curve), colour) in curves.iter().zip(PALETTE.iter().cycle()) {
-        let stroke = LineStyle::solid(*colour, 1.6);
-        let all = decibel(curve);
-        let mut sorted: Vec<f64> = all.iter().copied().filter(|amplitude| amplitude.is_finite()).collect();
-        sorted.sort_by(f64::total_cmp);
-        let Some(&middle) = sorted.get(sorted.len() / 2) else {
-            continue;
-        };
-        let drawn = all
-            .into_iter()
-            .map(|amplitude| amplitude.clamp(middle - AROUND, middle + AROUND));
-        let points = hz.iter().copied().zip(drawn);
-        amplitudes.push(PictureSeries::line(points, stroke).named(name));
-        let mut phase: Vec<(f64, f64)> = vec![];
-        for (f, (re, im)) in hz.iter().zip(curve.real.iter().zip(&curve.imag)) {
-            let angle = im.atan2(*re).to_degrees();
-            // a jump by a full turn is not part of the curve
-            if phase.last().is_some_and(|(_, before)| (angle - before).abs() > 270.0) {
-                phase.push((*f, f64::NAN));
-            }
-            phase.push((*f, angle));
-        }
-        phases.push(PictureSeries::line(phase, stroke));
-    }
-    let quarters = [-180.0, -90.0, 0.0, 90.0, 180.0].map(|angle| (angle, format!("{angle}").replace('-', "−")));
-    let phase_axis = PictureAxis {
-        labels: Some(quarters.to_vec()),
-        ..PictureAxis::new("phase [°]", "", 5).between(-180.0, 180.0)
-    };
-    Some(vec![
-        Panel::new((620.0, 250.0), x(), PictureAxis::new("amplitude", "dB", 6), amplitudes),
-        Panel::new((620.0, 150.0), x(), phase_axis, phases),
-    ])
 }
 
 /// Table of the peaks of several results.
@@ -318,27 +298,4 @@ pub fn peaks(all: &ComparedResponses) -> String {
     };
     let headings = "<result | <output | peak [Hz] | amplitude | [dB] | phase [°] | damping ratio";
     table(headings, all.results.iter().flat_map(of))
-}
-
-/// Picture of each response in the complex plane, over its largest amplitude (Nyquist).
-fn nyquist(found: &ResponseRecord) -> Option<Picture> {
-    let series = |(curve, colour): (&ResponseCurve, &Colour)| {
-        let parts = || curve.real.iter().copied().zip(curve.imag.iter().copied());
-        let largest = parts().map(|(re, im)| re.hypot(im)).fold(0.0, f64::max);
-        let points = parts().map(|(re, im)| (re / largest, im / largest));
-        let points: Vec<_> = points.filter(|(re, im)| re.is_finite() && im.is_finite()).collect();
-        PictureSeries::line(points, LineStyle::solid(*colour, 1.6)).named(&curve.output)
-    };
-    let all: Vec<_> = found.curves().zip(PALETTE.iter().cycle()).map(series).collect();
-    found.frequency_hz.get(1)?;
-    let axis = |name: &str| PictureAxis::new(name, "", 5).between(-1.0, 1.0).with(&[0.0]);
-    let panel = Panel::new((420.0, 420.0), axis("real part"), axis("imaginary part"), all);
-    Some(Picture::stacked(
-        format!("{} · responses in the complex plane", found.case),
-        format!(
-            "to {}, each over its largest amplitude; clockwise as the frequency increases",
-            found.input
-        ),
-        [panel],
-    ))
 }
