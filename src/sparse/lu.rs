@@ -6,7 +6,7 @@ use super::{BlockTridiagonal, Pattern};
 /// Largest number of dense block products per matrix entry for which dense blocks are chosen. KLU's factors of a beam have some 1.5 times
 /// as many entries as the matrix. A product within a dense block costs less than half a sparse one: entries are contiguous, four are
 /// processed at once, and no index is read.
-pub const DENSE: usize = 4;
+const DENSE: usize = 4;
 
 /// Consecutive failures of the block factorization after which it is no longer tried.
 const PATIENCE: u32 = 3;

@@ -4,7 +4,6 @@
 //! |---|---|
 //! | [`pencil`] | the pencil, its products and its factors at a shift |
 //! | `schur` | Schur form of a small matrix, its ordering and its eigenvectors |
-//! | `embedded` | complex factors in dense blocks along a line |
 //! | `exchange` | exchange of rows, so that KLU finds its pivots on the diagonal |
 //! | `dense` | all finite eigenvalues of a small pencil |
 //! | `krylov` | eigenvalues nearest a shift, for a large pencil |
@@ -25,7 +24,6 @@
 //! depends on Fortran, BLAS and LAPACK and does not separate repeated eigenvalues.
 
 mod dense;
-mod embedded;
 mod exchange;
 mod growing;
 mod krylov;
@@ -218,8 +216,8 @@ pub fn nearest(
     Ok(Eigenvalues {
         pairs: refined,
         finite: size,
-        factorizations: shifted.factorizations,
-        solves: shifted.solves,
+        factorizations: shifted.klu.factorizations,
+        solves: shifted.klu.solves,
         restarts,
         dense,
     })

@@ -3,7 +3,6 @@
 use nalgebra::Complex;
 
 use super::SpectralError;
-use super::embedded::EmbeddedFactors;
 use super::exchange::Exchanged;
 use crate::integrate::halt;
 use crate::sparse::KluError;
@@ -59,35 +58,13 @@ pub(super) struct Shifted<'a> {
     pub pencil: Pencil<'a>,
     /// σ, shifted slightly if it is an eigenvalue.
     pub shift: Complex<f64>,
+    pub klu: ComplexKlu,
+    exchanged: Exchanged,
     /// Unknowns whose column of B is not zero.
     pub differential: Vec<usize>,
-    /// Number of factorizations.
-    pub factorizations: u64,
-    /// Number of solutions.
-    pub solves: u64,
-    /// `A + σ B`.
     values: Vec<Complex<f64>>,
-    /// Factors along a line, if these are cheaper.
-    embedded: Option<Box<EmbeddedFactors>>,
-    /// True if the present factors are those along a line.
-    in_blocks: bool,
-    /// Sparse factors; `None` until they are needed. False if they are those of another shift.
-    sparse: Option<(Box<SparseFactors>, bool)>,
-    full: Vec<Complex<f64>>,
-}
-
-/// Sparse factors with rows exchanged for large entries on the diagonal.
-struct SparseFactors {
-    klu: ComplexKlu,
-    exchanged: Exchanged,
     reordered: Vec<Complex<f64>>,
-}
-
-impl SparseFactors {
-    fn factor(&mut self, values: &[Complex<f64>]) -> Result<(), SpectralError> {
-        self.exchanged.values(values, &mut self.reordered);
-        self.klu.factor(&self.reordered).map_err(failure)
-    }
+    full: Vec<Complex<f64>>,
 }
 
 /// Relative distances by which a shift is moved if there are no factors.
@@ -96,19 +73,21 @@ const MOVES: [f64; 4] = [0.0, 1e-7, 1e-5, 1e-3];
 impl<'a> Shifted<'a> {
     pub fn new(pencil: &Pencil<'a>, shift: Complex<f64>) -> Result<Self, SpectralError> {
         let n = pencil.pattern.columns();
+        let entries = pencil.a.iter().zip(pencil.b);
+        let values: Vec<_> = entries.map(|(a, b)| shift * *b + a).collect();
+        let exchanged = Exchanged::new(pencil.pattern, &values);
+        let klu = ComplexKlu::new(&exchanged.pattern).map_err(failure)?;
         let differential = (0..n)
             .filter(|&j| pencil.pattern.column(j).any(|e| pencil.b[e] != 0.0))
             .collect();
         let mut shifted = Self {
             pencil: *pencil,
             shift,
+            klu,
+            exchanged,
             differential,
-            factorizations: 0,
-            solves: 0,
-            values: vec![Complex::default(); pencil.pattern.entries()],
-            embedded: EmbeddedFactors::new(pencil.pattern).map(Box::new),
-            in_blocks: false,
-            sparse: None,
+            reordered: Vec::with_capacity(values.len()),
+            values,
             full: vec![Complex::default(); n],
         };
         shifted.shift = shifted.factor(shift)?;
@@ -133,86 +112,38 @@ impl<'a> Shifted<'a> {
             for ((value, a), b) in self.values.iter_mut().zip(self.pencil.a).zip(self.pencil.b) {
                 *value = moved * *b + a;
             }
-            if let Some((_, present)) = &mut self.sparse {
-                *present = false;
-            }
-            let embedded = self.embedded.as_mut();
-            self.in_blocks = embedded.is_some_and(|blocks| blocks.factor(self.pencil.pattern, &self.values));
-            self.factorizations += u64::from(self.in_blocks);
-            if self.in_blocks {
-                return Ok(moved);
-            }
-            match self.sparse() {
-                Ok(_) => return Ok(moved),
-                Err(fault) => last = fault,
+            self.exchanged.values(&self.values, &mut self.reordered);
+            match self.klu.factor(&self.reordered) {
+                Ok(()) => return Ok(moved),
+                Err(fault) => last = failure(fault),
             }
         }
         Err(last)
     }
 
-    /// Sparse factors at the present shift.
-    fn sparse(&mut self) -> Result<&mut SparseFactors, SpectralError> {
-        let (factors, present) = match &mut self.sparse {
-            Some(known) => known,
-            none => {
-                let exchanged = Exchanged::new(self.pencil.pattern, &self.values);
-                let factors = SparseFactors {
-                    klu: ComplexKlu::new(&exchanged.pattern).map_err(failure)?,
-                    exchanged,
-                    reordered: Vec::with_capacity(self.values.len()),
-                };
-                none.insert((Box::new(factors), false))
-            }
-        };
-        if !*present {
-            self.factorizations += 1;
-            factors.factor(&self.values)?;
-            *present = true;
-        }
-        Ok(factors)
-    }
-
     /// `(A + σ B)⁻¹ B Pᵀ v`, for all unknowns.
     pub fn whole(&mut self, v: &[Complex<f64>]) -> &[Complex<f64>] {
-        let mut full = std::mem::take(&mut self.full);
-        full.fill(Complex::default());
+        self.full.fill(Complex::default());
         for (&column, v) in self.differential.iter().zip(v) {
             for entry in self.pencil.pattern.column(column) {
-                full[self.pencil.pattern.rows[entry] as usize] += v * self.pencil.b[entry];
+                self.full[self.pencil.pattern.rows[entry] as usize] += v * self.pencil.b[entry];
             }
         }
-        self.solve(&mut full);
-        self.full = full;
+        self.exchanged.rows(&mut self.full);
+        self.klu.solve(&mut self.full);
         &self.full
     }
 
     /// Replaces `b` by the solution of `(A + σ B) x = b`.
     pub fn solve(&mut self, b: &mut [Complex<f64>]) {
-        self.solves += 1;
-        match (&mut self.embedded, self.in_blocks) {
-            (Some(blocks), true) => blocks.solve(b),
-            _ => self.solve_sparse(b, |factors, b| {
-                factors.exchanged.rows(b);
-                factors.klu.solve(b);
-            }),
-        }
+        self.exchanged.rows(b);
+        self.klu.solve(b);
     }
 
     /// Replaces `b` by the solution of `(A + σ B)ᴴ x = b`.
     pub fn solve_adjoint(&mut self, b: &mut [Complex<f64>]) {
-        self.solves += 1;
-        self.solve_sparse(b, |factors, b| {
-            factors.klu.solve_adjoint(b);
-            factors.exchanged.rows(b);
-        });
-    }
-
-    /// Solution by sparse factors; not finite without factors.
-    fn solve_sparse(&mut self, b: &mut [Complex<f64>], solve: impl FnOnce(&mut SparseFactors, &mut [Complex<f64>])) {
-        match self.sparse() {
-            Ok(factors) => solve(factors, b),
-            Err(_) => b.fill(Complex::new(f64::NAN, f64::NAN)),
-        }
+        self.klu.solve_adjoint(b);
+        self.exchanged.rows(b);
     }
 
     /// `K v`.

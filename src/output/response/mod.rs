@@ -291,7 +291,7 @@ pub fn peaks(all: &ComparedResponses) -> String {
         let rows = |curve: &ResponseCurve| {
             let peaks = curve.peaks.iter().map(|peak| row(curve, peak));
             peaks
-                .map(|row| [&[one.folder.clone()], &row[1..]].concat())
+                .map(|row| [std::slice::from_ref(&one.folder), &row[1..]].concat())
                 .collect::<Vec<_>>()
         };
         one.response.curves().flat_map(rows).collect::<Vec<_>>()

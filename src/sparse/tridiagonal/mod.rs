@@ -15,7 +15,7 @@
 
 mod condense;
 mod dense;
-mod levels;
+pub(super) mod levels;
 mod plan;
 mod sweeps;
 
