@@ -237,12 +237,16 @@ fn answer(case: &str, request: &Request, found: &BandResponse) -> Result<Respons
 
 /// Warnings of outputs with a large error.
 pub fn coarse(answer: &ResponseRecord) -> Vec<String> {
+    let cause = match answer.cycle {
+        Some(_) => "mesh and steps",
+        None => "the mesh",
+    };
     let warning = |curve: &ResponseCurve| {
         let [median, _] = curve
             .errors(&answer.frequency_hz)
             .filter(|[median, _]| *median > LARGE)?;
         Some(Code::ErrorEstimate.warning(format!(
-            "error of {} by the mesh: {} in the median over frequencies. Use a finer mesh (/mesh/cells_per_segment, /mesh/cells_per_bladder) or a lower --to.",
+            "error of {} by {cause}: {} in the median over frequencies. Use a finer mesh (/mesh/cells_per_segment, /mesh/cells_per_bladder) or a lower --to.",
             curve.output,
             error_percent(median)
         )))

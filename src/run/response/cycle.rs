@@ -17,7 +17,7 @@ use crate::numerics::shifted::ShiftedSolver;
 use crate::onestep::StepMap;
 use crate::onestep::forced::MarchStage;
 use crate::onestep::step_map::StepError;
-use crate::run::drive::{drive, settled, settled_opening};
+use crate::run::drive::{comes_to_rest, drive, settled, settled_opening};
 use crate::run::floquet::{self, Floquet};
 use crate::run::periodic::scene::{fault, whole};
 use crate::run::periodic::{PeriodicScene, ShootingRecord, shoot};
@@ -70,6 +70,10 @@ impl DrivenCycle {
             .find(|(pointer, ..)| *pointer == input);
         let mark = mark.map(|(.., signal)| signal.clone()).unwrap_or(Signal::Constant(0.0));
         let mut model = whole(&case)?;
+        if comes_to_rest(&model) {
+            let what = "nothing in the case varies periodically. Without this option the response is that about the start";
+            return Err(Error::Usage(format!("--about-cycle: {what}")));
+        }
         let drive = drive(&case, &model, None)?;
         // the product distinguishes the input from signals with the same values
         let product = |signal: Signal| Signal::Product(vec![signal, Signal::Constant(1.0)]);
