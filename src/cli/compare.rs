@@ -125,6 +125,25 @@ fn responses(asked: &CompareArguments) -> Result<ExitCode> {
             );
             return Err(Error::Usage(what));
         }
+        let parent = path.parent().map(|parent| {
+            if parent.as_os_str().is_empty() {
+                Path::new(".")
+            } else {
+                parent
+            }
+        });
+        if let Some(folder) = asked
+            .results
+            .iter()
+            .find(|one| parent.is_some_and(|parent| same(one, parent)))
+        {
+            let what = format!(
+                "--out {}: {} is one of the results; choose another folder",
+                path.display(),
+                folder.display()
+            );
+            return Err(Error::Usage(what));
+        }
         let text = response::overlay(&all).and_then(|picture| picture.svg());
         let text = text.ok_or_else(|| Error::Usage("nothing to draw".into()))?;
         replace_alike(path, &text, &["<svg", "<?xml"])

@@ -80,7 +80,7 @@ impl FolderKind {
             Self::Fit => ("fit", "fit", "fit.json", &["fit.csv", "fit.svg", "fitted-case.json"]),
             Self::Sense => ("sense", "sense", "sense.json", &["sense.csv", "sensors.csv", "sense.svg"]),
             Self::Optimum => ("optimum", "optimize", "optimum.json", &["designs.csv", "optimum.svg", "optimum-case.json"]),
-            Self::Response => ("response", "response", "response.json", &["response.csv", "response.svg"]),
+            Self::Response => ("response", "response", "response.json", &["response.csv", "response.svg", "nyquist.svg", UNCERTAINTY]),
             Self::Bands => ("bands", "bands", "bands.json", &["bands.csv", "bands.svg"]),
         }
     }

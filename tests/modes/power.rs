@@ -79,3 +79,36 @@ fn mean_powers_add_up() {
         }
     }
 }
+
+/// Goal: quadratic drag, sharp check valves and equilibria with fluid: powers of small motions add up, to 1e-3 of the power put in. They
+/// were those of a finite amplitude, and refused about equilibria.
+#[test]
+fn powers_are_those_of_vanishing_amplitude() {
+    let shipped = |name: &str| -> Value {
+        serde_json::from_str(&std::fs::read_to_string(format!("cases/{name}.json")).unwrap()).unwrap()
+    };
+    let mut finned = shipped("fin-in-water");
+    finned["mesh"] = json!({"segments": 10});
+    for (case, input, at, hz) in [
+        (finned, "/ends/root/clamped/u1_m", Some(0.0), [0.1, 0.4]),
+        (
+            shipped("bladder-pump"),
+            "/network/ports/0/pressure_pa",
+            None,
+            [0.5, 5.0],
+        ),
+        (
+            harvester(0.0, 1.0),
+            "/loads/0/force_x_n_m/signal",
+            Some(0.0),
+            [0.5, 5.0],
+        ),
+    ] {
+        let outputs = ["tip_u1".to_owned()];
+        let response = LinearResponse::new(&checked(&case), input, &outputs, at).unwrap();
+        for (hz, powers) in hz.iter().zip(powers(&response, &hz).unwrap()) {
+            let residual = powers.residual() / powers.input();
+            assert!(residual.abs() < 1e-3, "{input} {hz} Hz: {residual:e} {powers:?}");
+        }
+    }
+}

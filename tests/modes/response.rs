@@ -8,6 +8,7 @@ use slcbeam::run::response::LinearResponse;
 use slcbeam::run::response::state_space::StateSpace;
 use slcbeam::run::stop::StopFlag;
 use slcbeam::study::refine::numbers;
+use slcbeam::study::response::{Request, respond};
 
 use super::common::checked;
 
@@ -188,6 +189,26 @@ fn small_cycles_of_the_papers_wirings_have_the_amplitude_of_the_response() {
         }
         println!("{name}: {worst:.1e}");
     }
+}
+
+/// Goal: a band of one frequency has the response there; it was the static one.
+#[test]
+fn one_frequency_is_a_band() {
+    let shaken = beam(16, &json!({"clamped": {"u1_m": 0.0}}), &json!("free"));
+    let request = Request {
+        input: "/ends/root/clamped/u1_m".into(),
+        outputs: vec!["tip_u1".into()],
+        at: None,
+        band: [10.0, 10.0],
+        points: 200,
+    };
+    let case = checked(&shaken);
+    let found = respond(&case, &request, request.compute(&case).unwrap()).unwrap();
+    assert_eq!(found.frequencies, [10.0]);
+    let exact = at(&shaken, &request.input, "tip_u1", 10.0);
+    let (own, error) = (found.curves[0].values[0], found.curves[0].errors[0]);
+    assert!((own - exact).norm() < 1e-5 * exact.norm(), "{own} for {exact}");
+    assert!(error < 0.1 * exact.norm(), "{error}");
 }
 
 /// Goal: check valves, whose characteristic has a kink at zero flow, transmit a static pressure, at any pressure.

@@ -234,12 +234,22 @@ fn at_row(curve: &ResponseCurve, value: &ResponseValue) -> [String; 6] {
 }
 
 fn row(curve: &ResponseCurve, peak: &ResponsePeak) -> [String; 7] {
+    // the amplitude found at an undamped pole is a rounding error
+    let unbounded = peak.damping_ratio == Some(0.0);
     [
         String::new(),
         curve.output.clone(),
         significant(peak.frequency_hz, 7),
-        significant(peak.amplitude, 5),
-        format!("{:.2}", 20.0 * peak.amplitude.log10()),
+        if unbounded {
+            "unbounded".into()
+        } else {
+            significant(peak.amplitude, 5)
+        },
+        if unbounded {
+            String::new()
+        } else {
+            format!("{:.2}", 20.0 * peak.amplitude.log10())
+        },
         format!("{:.1}", peak.phase_deg),
         peak.damping_ratio.map_or(String::new(), |ratio| significant(ratio, 4)),
     ]
@@ -289,13 +299,27 @@ pub fn write(folder: &mut ResultFolder, found: &ResponseRecord) -> Result<Vec<Pa
 pub fn peaks(all: &ComparedResponses) -> String {
     let of = |one: &NamedResponse| {
         let rows = |curve: &ResponseCurve| {
-            let peaks = curve.peaks.iter().map(|peak| row(curve, peak));
-            peaks
-                .map(|row| [std::slice::from_ref(&one.folder), &row[1..]].concat())
-                .collect::<Vec<_>>()
+            let mut rows: Vec<_> = curve.peaks.iter().map(|peak| row(curve, peak)).collect();
+            if rows.is_empty() {
+                rows.push(["", &curve.output, "none", "", "", "", ""].map(String::from));
+            }
+            let named = rows
+                .iter()
+                .map(|row| [std::slice::from_ref(&one.folder), &row[1..]].concat());
+            named.collect::<Vec<_>>()
         };
         one.response.curves().flat_map(rows).collect::<Vec<_>>()
     };
     let headings = "<result | <output | peak [Hz] | amplitude | [dB] | phase [°] | damping ratio";
-    table(headings, all.results.iter().flat_map(of))
+    let mut text = table(headings, all.results.iter().flat_map(of));
+    let mut inputs: Vec<String> = all.results.iter().map(|one| one.response.input.clone()).collect();
+    inputs.dedup();
+    if inputs.len() > 1 {
+        let _ = writeln!(
+            text,
+            "\nthe inputs differ, so that amplitudes may have different units: {}",
+            inputs.join(", ")
+        );
+    }
+    text
 }

@@ -6,7 +6,6 @@ use serde::{Deserialize, Serialize};
 use super::family::{CycleFamily, FamilyMember, FamilyState};
 use super::scene::PeriodicScene;
 use super::shooting::{Cycle, ShootingRecord, attempt, lost, pass, shoot};
-use crate::dae::BeamDae;
 use crate::discrete::layout::LineLayout;
 use crate::numerics::kernels::dot;
 use crate::onestep::step_map::StepError;
@@ -20,7 +19,7 @@ const SHORTEST: f64 = 1e-3;
 const MOST_STEPS: usize = 60;
 
 /// Condition that drive and motion are a quarter period apart: where the drive passes zero, at the beginning of the period, the velocity
-/// relative to the ends is zero in the mean over the beam, weighted by the shape of the motion.
+/// relative to driven ends is zero in the mean over the beam, weighted by the shape of the motion.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct PhaseCondition {
     /// Weight of each scaled unknown, zero except for velocities; of norm one.
@@ -62,42 +61,25 @@ impl PhaseCondition {
         Ok((Self { weights }, state))
     }
 
-    /// Weighted velocities of the ends' motion at the beginning of the period.
-    fn carried(&self, scene: &PeriodicScene) -> f64 {
-        let mut dae = scene.dae();
-        let (system, now) = dae.instant(0.0);
-        let l = &system.layout;
-        let of_line = |(axis, line): (usize, &LineLayout)| -> f64 {
-            let velocity = |(node, _, v): (usize, usize, Option<usize>)| {
-                v.map(|v| self.weights[v] * now.carried(axis, system.mesh.share(node)).rate / l.scales[v])
-            };
-            line.unknowns().filter_map(velocity).sum()
-        };
-        l.lines.iter().enumerate().map(of_line).sum()
-    }
-
-    /// Weighted velocity at the beginning of the period relative to the ends, over the size of the motion.
-    fn velocity(&self, scene: &PeriodicScene, state: &FamilyState) -> f64 {
-        (dot(&self.weights, &state.y) - self.carried(scene)) / state.size
+    /// Weighted velocity at the beginning of the period, over the size of the motion.
+    fn velocity(&self, state: &FamilyState) -> f64 {
+        dot(&self.weights, &state.y) / state.size
     }
 
     /// `[E100]` Finds the cycle at the resonance near a state. The family is one over the frequency f of the drive, in logarithms:
     ///
     /// ```text
-    /// P(y, c) = y     Σ φᵢ (vᵢ - v̄ᵢ) = 0 at t = 0     c = ln f
+    /// P(y, c) = y     Σ φᵢ vᵢ = 0 at t = 0     c = ln f
     /// ```
     ///
-    /// φ is the shape, v̄ the velocity of the ends' motion. The drive passes zero at the beginning of the period. Without damping and
+    /// φ is the shape. The velocities v, as all unknowns, are relative to the motion of the ends. The drive passes zero at the beginning of the period. Without damping and
     /// drive these cycles are the nonlinear normal modes; with them, the backbone of the response (Peeters, Kerschen, Golinval 2011).
     ///
     /// # Errors
     /// No such cycle was found near the state.
     pub fn meet(&self, family: &CycleFamily, near: &FamilyState) -> Result<FamilyMember, StepError> {
-        let (_, scene) = family.at(family.scale.value(near.coordinate))?;
-        // the velocity of driven ends is proportional to the frequency
-        let by_coordinate = -self.carried(&scene) / near.size;
-        let direction: Vec<f64> = self.weights.iter().copied().chain([by_coordinate]).collect();
-        let off = |scene: &PeriodicScene, y: &[f64], _: f64| (dot(&self.weights, y) - self.carried(scene)) / near.size;
+        let direction: Vec<f64> = self.weights.iter().copied().chain([0.0]).collect();
+        let off = |_: &PeriodicScene, y: &[f64], _: f64| dot(&self.weights, y) / near.size;
         let found = family.meet(near, &direction, &off)?;
         match (found.state.coordinate - near.coordinate).abs() * family.scale.step < FARTHEST {
             true => Ok(found),
@@ -117,7 +99,7 @@ impl PhaseCondition {
         let scene = &family.reference;
         let mut cycle = attempt(scene, begin.y.clone(), &mut ShootingRecord::default())?;
         let mut here = family.position(scene, &mut cycle, begin.coordinate, None)?;
-        let mut velocity = self.velocity(scene, &here);
+        let mut velocity = self.velocity(&here);
         if velocity * dot(&self.weights, &here.tangent) > 0.0 {
             here = here.reversed();
         }
@@ -128,7 +110,7 @@ impl PhaseCondition {
                 Err(error) if step < SHORTEST || family.reference.stop.raised() => return Err(error),
                 Err(_) => step *= 0.5,
                 Ok(there) => {
-                    let next = self.velocity(&there.scene, &there.state);
+                    let next = self.velocity(&there.state);
                     if next * velocity <= 0.0 {
                         return self.meet(family, &here.shifted(&direction, step * velocity / (velocity - next)));
                     }
@@ -140,30 +122,20 @@ impl PhaseCondition {
     }
 }
 
-/// First harmonic of the displacements relative to the ends' motion, `∫ u exp(-2πit/T) dt`, at the index of each unknown.
+/// First harmonic of the unknowns, `∫ y exp(-2πit/T) dt`.
 fn harmonic(scene: &PeriodicScene, cycle: &mut Cycle) -> Result<Vec<Complex<f64>>, StepError> {
     let turns = std::f64::consts::TAU / scene.drive.period;
     let (mut y, mut yp) = (cycle.y.clone(), cycle.yp.clone());
     let mut sum = vec![Complex::new(0.0, 0.0); y.len()];
-    let displacements = |dae: &mut BeamDae, t: f64, y: &[f64]| -> Vec<(usize, f64)> {
-        let (system, now) = dae.instant(t);
-        let l = &system.layout;
-        let of_line = |(axis, line): (usize, &LineLayout)| {
-            let of = |(node, u, _)| (u, y[u] - now.carried(axis, system.mesh.share(node)).value / l.scales[u]);
-            line.unknowns().map(of).collect::<Vec<_>>()
-        };
-        l.lines.iter().enumerate().flat_map(of_line).collect()
-    };
-    let start = displacements(&mut scene.dae(), 0.0, &y);
+    let start = y.clone();
     let mut before = (0.0, start.clone());
-    cycle.march.go(&mut y, &mut yp, &mut |dae, t, y| {
-        let here = displacements(dae, t, y);
+    cycle.march.go(&mut y, &mut yp, &mut |_, t, y| {
         let weight = 0.5 * (t - before.0);
-        for (((u, now), (_, old)), (_, first)) in here.iter().zip(&before.1).zip(&start) {
-            let turned = |t: f64, u: f64| Complex::from_polar(u - first, -turns * t);
-            sum[*u] += weight * (turned(before.0, *old) + turned(t, *now));
+        for (k, sum) in sum.iter_mut().enumerate() {
+            let turned = |t: f64, y: f64| Complex::from_polar(y - start[k], -turns * t);
+            *sum += weight * (turned(before.0, before.1[k]) + turned(t, y[k]));
         }
-        before = (t, here);
+        before = (t, y.to_vec());
     })?;
     Ok(sum)
 }

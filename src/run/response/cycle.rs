@@ -71,7 +71,8 @@ impl DrivenCycle {
         let mark = mark.map(|(.., signal)| signal.clone()).unwrap_or(Signal::Constant(0.0));
         let mut model = whole(&case)?;
         if comes_to_rest(&model) {
-            let what = "nothing in the case varies periodically. Without this option the response is that about the start";
+            let what =
+                "nothing in the case varies periodically. Without this option the response is that about the start";
             return Err(Error::Usage(format!("--about-cycle: {what}")));
         }
         let drive = drive(&case, &model, None)?;

@@ -26,7 +26,7 @@ const SHORTER: f64 = 10.0;
 
 /// Limits of difference quotients over decreasing steps: for each component the extrapolated value that agrees best with its neighbor,
 /// or 0 if it does not exceed their difference. Extrapolation removes the first-order error of a kink in a law, as of a check valve.
-fn limits(quotients: &[Vec<f64>]) -> Vec<f64> {
+pub fn limits(quotients: &[Vec<f64>]) -> Vec<f64> {
     let extrapolated = |i: usize, k: usize| {
         let (long, short) = (quotients[k][i], quotients[k + 1][i]);
         (SHORTER * short - long) / (SHORTER - 1.0)

@@ -97,7 +97,9 @@ impl ResponseAnalysis {
         for (curve, values) in all.found.curves.iter().zip(&all.values) {
             for (name, peak) in peaks(curve) {
                 outcome.put(format!("{name}.frequency_hz"), peak.frequency_hz);
-                outcome.put(format!("{name}.amplitude"), peak.value.norm());
+                // that of an undamped peak is unbounded
+                let amplitude = Some(peak.value.norm()).filter(|_| peak.damping_ratio() != Some(0.0));
+                outcome.put(format!("{name}.amplitude"), amplitude);
                 outcome.put(format!("{name}.damping_ratio"), peak.damping_ratio());
             }
             for (hz, value) in self.frequencies.iter().zip(values) {
@@ -182,7 +184,7 @@ impl Analysis for ResponseAnalysis {
     }
 
     fn names(&self, case: &Case) -> Result<Vec<String>> {
-        let mut all = vec![];
+        let mut all = vec!["stable".to_owned()];
         for output in response::outputs(case, &self.input, &self.outputs)? {
             let key = output.key();
             for k in 1..=PEAKS {

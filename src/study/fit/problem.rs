@@ -1,6 +1,6 @@
 //! Fit problem: a case, the numbers to be fitted, and measured values.
 
-use super::abscissa::{Abscissa, DrivenNumber, FitAnalysis, columns, figure_of_response};
+use super::abscissa::{AMPLITUDE, Abscissa, DrivenNumber, FitAnalysis, columns, figure_of_response};
 use super::robust::LossFunction;
 use crate::case::parameter::{Parameter, with};
 use crate::case::schema::{Case, Thinning};
@@ -107,6 +107,9 @@ impl FitProblem {
                 let what = "it does not depend on numbers of the case, so it cannot be fitted";
                 return Err(Error::Usage(format!("--match {}: {what}", one.asked.describe())));
             }
+        }
+        if asked.through() == FitAnalysis::Response {
+            ratios(table, &matched)?;
         }
         let sigmas = sigmas(table, &matched, asked)?;
         let measured = |row: &usize| matched.iter().any(|one| one.values[*row].is_some());
@@ -230,6 +233,22 @@ impl FitProblem {
     pub fn values(&self, places: &[f64]) -> Vec<f64> {
         search_bounds::values(&self.spans, places)
     }
+}
+
+/// Rejects amplitudes of a response in decibels, and negative ones.
+fn ratios(table: &DataTable, matched: &[Matched]) -> Result<()> {
+    let mut faults = vec![];
+    for one in matched.iter().filter(|one| one.name.ends_with(AMPLITUDE)) {
+        let heading = &table.columns[one.column].heading;
+        if heading.to_ascii_lowercase().ends_with("db") {
+            return Err(Error::Usage(format!(
+                "{heading}: decibels are not read; give the amplitude, 10^(dB/20)"
+            )));
+        }
+        let negative = (0..table.len()).filter(|row| one.values[*row].is_some_and(|value| value < 0.0));
+        faults.extend(negative.map(|row| table.fault(row, one.column, "an amplitude is not below 0")));
+    }
+    table.sound(faults)
 }
 
 /// Standard deviations of each column in the unit of its quantity, row by row; `None` if not given.

@@ -32,7 +32,16 @@ pub fn resolve(option: &str, text: &str, what: &AnalysisKind, names: &[String]) 
     let mut quantities: Vec<String> = names.iter().map(quantity).collect();
     quantities.dedup();
     let all = names.iter().chain(&quantities).map(String::as_str);
+    let own: Vec<&str> = names
+        .iter()
+        .map(String::as_str)
+        .filter(|name| name.starts_with(&format!("{text}.")))
+        .collect();
     let hint = match nearest_figure(text, all) {
+        Some(_) if !own.is_empty() => {
+            let more = if own.len() > LISTED { ", .." } else { "" };
+            format!("its figures are {}{more}", own[..own.len().min(LISTED)].join(", "))
+        }
         Some(meant) => format!("nearest is {meant}"),
         None => {
             let more = if quantities.len() > LISTED { ", .." } else { "" };

@@ -19,6 +19,8 @@ use crate::study::evaluations::Evaluations;
 
 /// Number of modes among which the one nearest to the frequency of the case is chosen.
 const MODES: usize = 8;
+/// Largest distance of the first resonance from the mode, as the logarithm of the ratio of frequencies.
+const FARTHEST: f64 = 0.1;
 /// Smallest part of the distance of two values in which a resonance is followed.
 const SHORTEST: f64 = 1.0 / 64.0;
 
@@ -48,10 +50,21 @@ pub fn backbone(
         return Ok(found);
     };
     found.resonance = Some(pointer.into());
+    if request.pointer == pointer {
+        let what = "--sweep varies the same number; sweep an amplitude";
+        return Err(Error::Usage(format!("--resonance {pointer}: {what}")));
+    }
     let drive = zero_phase(case, pointer)?;
     let linear = mode(case, drive.value)?;
     let near = parameter::with(case, &[(pointer, linear)])?;
-    let reference = PeriodicScene::new(&near, None)?.heeding(stop);
+    let reference = PeriodicScene::new(&near, None).map_err(|error| match PeriodicScene::new(case, None) {
+        // the frequency of the mode and those of other drives have no common period
+        Ok(_) => Error::Usage(format!(
+            "--resonance {pointer}: another signal is periodic, too; only one may be"
+        )),
+        Err(_) => error,
+    })?;
+    let reference = reference.heeding(stop);
     reference.held(&case.name)?;
     found.warnings.extend(reference.trapped.clone());
     let follower = BackboneFollower {
@@ -135,6 +148,11 @@ fn zero_phase(case: &Case, pointer: &str) -> Result<Parameter> {
     let Some(sine) = pointer.strip_suffix("/frequency_hz") else {
         return usage("expected the frequency of the drive, such as /loads/0/force_x_n/signal/sine/frequency_hz");
     };
+    if sine.contains("/slope_rad") {
+        return usage(
+            "the drive turns an end, so that the motion relative to it is not defined; move the end, or use a load",
+        );
+    }
     let found = Parameter::find_as("--resonance", case, pointer)?;
     let phase = Parameter::number("--resonance", case, &format!("{sine}/phase_rad"))?;
     match phase.value == 0.0 {
@@ -208,6 +226,11 @@ impl BackboneFollower<'_> {
             Err(error) => Err(error.what),
         };
         Ok(match found {
+            Ok((_, point)) if point.state.coordinate.abs() > FARTHEST => Err(format!(
+                "the nearest resonance is at {:.4} Hz, far from the mode at {:.4} Hz. Choose a first value with a smaller motion",
+                self.scale.value(point.state.coordinate),
+                self.scale.from
+            )),
             Ok((condition, point)) => Ok(BackboneStart { condition, point }),
             Err(why) => Err(format!(
                 "{why}. The search begins at the mode at {:.4} Hz: choose a first value with a smaller motion",

@@ -1,0 +1,140 @@
+//! Poles of a response in a band.
+
+use nalgebra::Complex;
+
+use super::approximation::ApproximatedResponse;
+use crate::case::Case;
+use crate::run::modes;
+use crate::run::response::LinearResponse;
+use crate::spectral::{self, EigenvalueOptions};
+
+/// Relative distance of an eigenvalue from the pole of an approximation that stands for it.
+const NEAR_POLE: f64 = 0.02;
+/// Relative difference of one eigenvalue found twice.
+const SAME_POLE: f64 = 1e-6;
+/// Largest number of pole pairs to compute in the band.
+const POLES: usize = 48;
+
+/// A pole in the band.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct BandPole {
+    /// `s` [1/s]; of a conjugate pair the pole with positive imaginary part.
+    pub s: Complex<f64>,
+    /// Bound of its numerical error [1/s].
+    pub bound: f64,
+}
+
+/// Poles in a band, and the number of poles with positive real part. The search omits the memory of unsteady friction, whose many decay
+/// modes would crowd it; each pole is corrected afterwards.
+///
+/// # Errors
+/// The poles cannot be computed.
+pub fn poles(
+    case: &Case,
+    at: Option<f64>,
+    response: &LinearResponse,
+    band: [f64; 2],
+) -> std::result::Result<Poles, String> {
+    let words = |failure: spectral::SpectralError| failure.to_string();
+    let apart = response.remembers.then(|| plain(case, at)).transpose()?;
+    let plain = apart.as_ref().unwrap_or(&response.about);
+    let tau = std::f64::consts::TAU;
+    let [from, to] = band.map(|hz| tau * hz);
+    let middle = Complex::new(0.0, (from.max(1e-3 * to) * to).sqrt());
+    let options = EigenvalueOptions::default();
+    let pairs = spectral::nearest(&plain.pencil(), middle, 2 * POLES, &options)
+        .map_err(words)?
+        .pairs;
+    let farthest = pairs.iter().map(|pair| (pair.s - middle).norm()).fold(0.0, f64::max);
+    let whole = pairs.len() < 2 * POLES || farthest >= (to - middle.im).max(middle.im - from);
+    let growing = growing_among(&pairs).map(|pair| pair.s).collect();
+    let mut poles = vec![];
+    for pair in pairs.iter().filter(|pair| pair.s.im > 0.0) {
+        let (mut s, mut bound) = (pair.s, pair.error);
+        if response.remembers && (0.5 * from..=2.0 * to).contains(&s.im) {
+            let near = spectral::nearest(&response.about.pencil(), s, 4, &options)
+                .map_err(words)?
+                .pairs;
+            let found = near.iter().min_by(|a, b| (a.s - s).norm().total_cmp(&(b.s - s).norm()));
+            (s, bound) = found.map_or((s, bound), |found| (found.s, found.error));
+        }
+        // damping below its error bound counts as zero
+        if s.re.abs() <= bound {
+            s.re = 0.0;
+        }
+        poles.push(BandPole { s, bound });
+    }
+    poles.retain(|pole| (from..=to).contains(&pole.s.im));
+    let mut found = Poles { poles, growing, whole };
+    found.sort();
+    Ok(found)
+}
+
+/// Poles in a band.
+#[derive(Clone, Debug, Default)]
+pub struct Poles {
+    /// Poles, in ascending order of frequency; of a conjugate pair the one with positive imaginary part.
+    pub poles: Vec<BandPole>,
+    /// Poles with positive real part, in the band or not.
+    pub growing: Vec<Complex<f64>>,
+    /// False if the band may contain further poles.
+    pub whole: bool,
+}
+
+impl Poles {
+    fn sort(&mut self) {
+        self.poles.sort_by(|a, b| a.s.im.total_cmp(&b.s.im));
+        self.poles.dedup_by(|a, b| (a.s - b.s).norm() < 1e-9 * b.s.norm());
+    }
+
+    /// Adds poles that outputs show: the eigenvalues nearest to the poles of an approximation in a band [Hz], where a search for the
+    /// nearest to its middle finds others first.
+    pub(super) fn complete(&mut self, response: &LinearResponse, shown: &ApproximatedResponse, band: [f64; 2]) {
+        let [from, to] = band.map(|hz| std::f64::consts::TAU * hz);
+        let within = |s: Complex<f64>| (from..=to).contains(&s.im);
+        let poles = if self.whole { vec![] } else { shown.fit.poles() };
+        for about in poles.into_iter().filter(|s| within(*s)) {
+            let nearest = spectral::nearest(&response.about.pencil(), about, 2, &EigenvalueOptions::default());
+            let near = |pair: &spectral::EigenPair| (pair.s - about).norm();
+            let pairs = nearest.map_or(vec![], |found| found.pairs).into_iter();
+            let found = pairs.min_by(|a, b| near(a).total_cmp(&near(b)));
+            let Some(pair) = found.filter(|pair| within(pair.s) && near(pair) < NEAR_POLE * about.norm()) else {
+                continue;
+            };
+            let known = |pole: &BandPole| (pole.s - pair.s).norm() < SAME_POLE * pair.s.norm();
+            if !self.poles.iter().any(known) {
+                self.poles.push(BandPole {
+                    s: pair.s,
+                    bound: pair.error,
+                });
+            }
+        }
+        self.sort();
+    }
+}
+
+/// Linearization without the memory of unsteady friction.
+fn plain(case: &Case, at: Option<f64>) -> std::result::Result<modes::Linearised, String> {
+    let plain = match at {
+        Some(at) => modes::at_equilibrium(case, at),
+        None => modes::linearise(case, 0.0, None),
+    };
+    plain.map_err(|fault| fault.to_string())
+}
+
+/// Eigenvalues with positive real part, one of each conjugate pair.
+fn growing_among(pairs: &[spectral::EigenPair]) -> impl Iterator<Item = &spectral::EigenPair> {
+    pairs.iter().filter(|pair| pair.s.im >= 0.0 && pair.s.re > pair.error)
+}
+
+/// Number of growing poles, or conjugate pairs, near the characteristic frequency of the state.
+///
+/// # Errors
+/// The poles cannot be computed.
+pub fn growing(case: &Case, at: Option<f64>, response: &LinearResponse) -> std::result::Result<usize, String> {
+    let apart = response.remembers.then(|| plain(case, at)).transpose()?;
+    let plain = apart.as_ref().unwrap_or(&response.about);
+    let middle = Complex::new(0.0, plain.frequency());
+    let found = spectral::nearest(&plain.pencil(), middle, 2 * POLES, &EigenvalueOptions::default());
+    Ok(growing_among(&found.map_err(|failure| failure.to_string())?.pairs).count())
+}
