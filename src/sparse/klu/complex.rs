@@ -7,28 +7,6 @@ use nalgebra::Complex;
 use super::{Analysis, KluError};
 use crate::sparse::Pattern;
 use crate::sparse::c;
-use crate::sparse::tridiagonal::levels::Graph;
-
-/// Smallest number of columns, and largest number of unknowns in a level, for an order along a line.
-const LONG: usize = 2000;
-const NARROW: usize = 48;
-
-/// Order of the unknowns of a large matrix along a line, if it is narrow: pivots off the diagonal then fill at most the band. In AMD's
-/// order they fill ever more of a long beam.
-fn along_a_line(pattern: &Pattern) -> Option<Vec<i64>> {
-    let n = pattern.columns();
-    if n < LONG {
-        return None;
-    }
-    let column = |j: usize| {
-        let rows = &pattern.rows[pattern.column(j)];
-        rows.iter().map(move |&row| [row as u32, j as u32])
-    };
-    let edges: Vec<[u32; 2]> = (0..n).flat_map(column).collect();
-    let levels = Graph::new(n, &edges).levels();
-    let narrow = levels.iter().all(|level| level.len() <= NARROW);
-    narrow.then(|| levels.into_iter().flatten().map(i64::from).collect())
-}
 
 /// LU factors of complex matrices with a common pattern; pivots are chosen anew for every matrix.
 pub struct ComplexKlu {
@@ -41,11 +19,10 @@ pub struct ComplexKlu {
 }
 
 impl ComplexKlu {
-    /// Analyzes a square pattern: block triangular form, rows scaled by their largest entry; AMD ordering, or that along a line if the
-    /// matrix is large and narrow.
+    /// Analyzes a square pattern: block triangular form, AMD ordering, rows scaled by their largest entry.
     pub fn new(pattern: &Pattern) -> Result<Self, KluError> {
         Ok(Self {
-            analysis: Analysis::ordered(pattern, along_a_line(pattern))?,
+            analysis: Analysis::new(pattern)?,
             numeric: ptr::null_mut(),
             factorizations: 0,
             solves: 0,

@@ -45,18 +45,12 @@ struct Analysis {
 
 impl Analysis {
     fn new(pattern: &Pattern) -> Result<Self, KluError> {
-        Self::ordered(pattern, None)
-    }
-
-    /// Analysis with the columns and rows in an order, a permutation; in that of AMD without one.
-    fn ordered(pattern: &Pattern, order: Option<Vec<i64>>) -> Result<Self, KluError> {
         let n = pattern.columns();
         // the C code relies on all of these conditions
         let sound = pattern.starts[0] == 0
             && pattern.starts.windows(2).all(|pair| pair[0] <= pair[1])
             && pattern.starts[n] as usize == pattern.rows.len()
-            && pattern.rows.iter().all(|&row| row >= 0 && (row as usize) < n)
-            && order.as_ref().is_none_or(|order| is_permutation(order, n));
+            && pattern.rows.iter().all(|&row| row >= 0 && (row as usize) < n);
         if !sound {
             return Err(KluError::Package {
                 status: c::KLU_INVALID.into(),
@@ -69,17 +63,8 @@ impl Analysis {
         common.ordering = 0; // AMD: fills less than COLAMD where a few rows are dense
         common.scale = 2; // rows by their largest entry
         let (mut starts, mut rows) = (pattern.starts.clone(), pattern.rows.clone());
-        let (count, starts_at, rows_at) = (n as i64, starts.as_mut_ptr(), rows.as_mut_ptr());
-        // SAFETY: pattern and order have been checked above; the arrays are only read.
-        let symbolic = unsafe {
-            match order {
-                Some(mut order) => {
-                    let order = order.as_mut_ptr();
-                    c::klu_l_analyze_given(count, starts_at, rows_at, order, order, &mut *common)
-                }
-                None => c::klu_l_analyze(count, starts_at, rows_at, &mut *common),
-            }
-        };
+        // SAFETY: the pattern has been checked above; the arrays are only read.
+        let symbolic = unsafe { c::klu_l_analyze(n as i64, starts.as_mut_ptr(), rows.as_mut_ptr(), &mut *common) };
         let analysis = Self {
             starts,
             rows,
@@ -112,18 +97,6 @@ impl Analysis {
             }
         }
     }
-}
-
-/// True if every index below `n` occurs once.
-fn is_permutation(order: &[i64], n: usize) -> bool {
-    let mut seen = vec![false; n];
-    order.len() == n
-        && order
-            .iter()
-            .all(|&k| match usize::try_from(k).ok().and_then(|k| seen.get_mut(k)) {
-                Some(seen) => !std::mem::replace(seen, true),
-                None => false,
-            })
 }
 
 impl Drop for Analysis {

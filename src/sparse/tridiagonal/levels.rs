@@ -6,7 +6,7 @@ use crate::sparse::groups::groups;
 const SEARCHES: usize = 6;
 
 /// Neighbours of every node: those of node k are `to[starts[k]..starts[k + 1]]`.
-pub(in crate::sparse) struct Graph {
+pub(super) struct Graph {
     pub starts: Vec<usize>,
     pub to: Vec<u32>,
 }

@@ -15,7 +15,7 @@
 
 mod condense;
 mod dense;
-pub(super) mod levels;
+mod levels;
 mod plan;
 mod sweeps;
 

@@ -19,6 +19,8 @@ use crate::study::evaluations::Evaluations;
 
 /// Number of modes among which the one nearest to the frequency of the case is chosen.
 const MODES: usize = 8;
+/// Damping ratio below which a mode has a resonance.
+const DAMPED: f64 = 0.2;
 /// Largest distance of the first resonance from the mode, as the logarithm of the ratio of frequencies.
 const FARTHEST: f64 = 0.1;
 /// Smallest part of the distance of two values in which a resonance is followed.
@@ -169,12 +171,14 @@ fn mode(case: &Case, near_hz: f64) -> Result<f64> {
         limits: false,
     };
     let found = modes::modes(case, &options)?;
-    let all = found.modes.iter().filter(|mode| mode.kind.swings());
+    // modes of the fluid hardly oscillate
+    let lightly = |mode: &&modes::Mode| mode.kind.swings() && -mode.s.re < DAMPED * mode.s.norm();
+    let all = found.modes.iter().filter(lightly);
     let frequencies = all.map(|mode| mode.s.norm() / std::f64::consts::TAU);
     let nearest = frequencies.min_by(|a, b| (a - near_hz).abs().total_cmp(&(b - near_hz).abs()));
     nearest.ok_or_else(|| {
         Error::Usage(format!(
-            "--resonance: {} has no mode that oscillates near {near_hz} Hz; `slcbeam modes` lists them",
+            "--resonance: {} has no mode with a damping ratio below {DAMPED} near {near_hz} Hz; `slcbeam modes` lists them",
             case.name
         ))
     })
