@@ -7,16 +7,15 @@ use std::process::ExitCode;
 use serde_json::Value;
 
 use super::arguments::CompareArguments;
-use super::terminal;
+use super::{compare_responses, terminal};
 use crate::case;
 use crate::error::{Error, Result};
 use crate::output::columns::{self, aligned};
-use crate::output::folder::{self, CASE, replace_alike};
+use crate::output::folder::{CASE, replace_alike};
 use crate::output::kind::FolderKind;
 use crate::output::numbers::{percent, quantity, significant};
 use crate::output::{comparison as recordings, fit, reading, report, response};
 use crate::results;
-use crate::results::response::{ComparedResponses, NamedResponse};
 use crate::study::compare::changes::Change;
 use crate::study::compare::difference::Difference;
 use crate::study::compare::{Comparison, ManyComparison, Recording};
@@ -50,7 +49,7 @@ pub fn compare(asked: &CompareArguments) -> Result<ExitCode> {
         ));
     }
     if asked.results.iter().all(|one| one.join(response::JSON).is_file()) {
-        return responses(asked);
+        return compare_responses::compare(asked);
     }
     if let Some(what) = asked.results.iter().find_map(|one| FolderKind::no_run(one)) {
         return usage(what);
@@ -106,56 +105,6 @@ pub fn compare(asked: &CompareArguments) -> Result<ExitCode> {
     written.map(|()| ExitCode::SUCCESS)
 }
 
-/// Frequency responses over each other, and their peaks.
-fn responses(asked: &CompareArguments) -> Result<ExitCode> {
-    let read = |dir: &PathBuf| -> Result<NamedResponse> {
-        Ok(NamedResponse {
-            folder: dir.display().to_string(),
-            response: folder::result(&dir.join(response::JSON))?.result,
-        })
-    };
-    let all = ComparedResponses {
-        results: asked.results.iter().map(read).collect::<Result<_>>()?,
-    };
-    let written = asked.out.as_ref().map_or(Ok(()), |path| {
-        if !picture(path) {
-            let what = format!(
-                "--out {}: for frequency responses a picture, a file that ends in .svg",
-                path.display()
-            );
-            return Err(Error::Usage(what));
-        }
-        let parent = path.parent().map(|parent| {
-            if parent.as_os_str().is_empty() {
-                Path::new(".")
-            } else {
-                parent
-            }
-        });
-        if let Some(folder) = asked
-            .results
-            .iter()
-            .find(|one| parent.is_some_and(|parent| same(one, parent)))
-        {
-            let what = format!(
-                "--out {}: {} is one of the results; choose another folder",
-                path.display(),
-                folder.display()
-            );
-            return Err(Error::Usage(what));
-        }
-        let text = response::overlay(&all).and_then(|picture| picture.svg());
-        let text = text.ok_or_else(|| Error::Usage("nothing to draw".into()))?;
-        replace_alike(path, &text, &["<svg", "<?xml"])
-    });
-    let written = answerable(written)?;
-    super::print(&match asked.json {
-        true => results::text(&all),
-        false => response::peaks(&all),
-    })?;
-    written.map(|()| ExitCode::SUCCESS)
-}
-
 /// Reads the result of a run, or of a cycle, which is a run over one period.
 fn recording(dir: &Path) -> Result<Recording> {
     FolderKind::wanted("compare", dir, &[FolderKind::Run, FolderKind::Cycle])?;
@@ -163,13 +112,13 @@ fn recording(dir: &Path) -> Result<Recording> {
 }
 
 /// True if two paths name one folder.
-fn same(a: &Path, b: &Path) -> bool {
+pub(super) fn same(a: &Path, b: &Path) -> bool {
     let whole = |path: &Path| std::fs::canonicalize(path).ok();
     a == b || whole(a).is_some_and(|a| whole(b) == Some(a))
 }
 
 /// True if a path is that of a picture.
-fn picture(path: &Path) -> bool {
+pub(super) fn picture(path: &Path) -> bool {
     ends(path, "svg")
 }
 
@@ -281,7 +230,7 @@ fn with_data(asked: &CompareArguments) -> Result<ExitCode> {
 }
 
 /// Separates errors of writing, after which the answer is still printed, from others.
-fn answerable(written: Result<()>) -> Result<Result<()>> {
+pub(super) fn answerable(written: Result<()>) -> Result<Result<()>> {
     match written {
         Err(error) if !matches!(error, Error::Output { .. }) => Err(error),
         written => Ok(written),

@@ -5,6 +5,7 @@ mod bands;
 mod check;
 mod coefficients;
 mod compare;
+mod compare_responses;
 mod completions;
 mod cycle_response;
 mod effects;

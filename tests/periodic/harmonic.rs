@@ -229,7 +229,7 @@ fn the_command_writes_sidebands() {
         (
             "cases/dry-cantilever.json",
             [&root[..], &["--about-cycle"]].concat(),
-            "no periodic signal",
+            "nothing in the case varies periodically",
         ),
         (
             &path("case.json"),
