@@ -303,7 +303,7 @@ const OPEN: f64 = 0.01;
 /// Warning that mean powers do not add up.
 fn open_balance(all: &[MeanPowers], frequencies: &[f64]) -> Option<String> {
     let share = |powers: &MeanPowers| {
-        let parts = POWERS.iter().map(|(_, rate)| powers.of(*rate).abs());
+        let parts = POWERS.iter().map(|(_, rate)| powers.power(*rate).abs());
         powers.residual().abs() / parts.fold(powers.input().abs(), f64::max)
     };
     let shares = all.iter().map(share).zip(frequencies);
@@ -324,7 +324,7 @@ fn power_curves(all: &[MeanPowers]) -> Vec<PowerCurve> {
         power: power.into(),
         mean_w: all.iter().map(of).collect(),
     };
-    let further = POWERS.map(|(power, rate)| curve(power, &move |powers| powers.of(rate)));
+    let further = POWERS.map(|(power, rate)| curve(power, &move |powers| powers.power(rate)));
     let mut curves: Vec<PowerCurve> = [curve("input", &MeanPowers::input)]
         .into_iter()
         .chain(further)

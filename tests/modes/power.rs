@@ -39,7 +39,7 @@ fn a_small_cycle_has_the_mean_powers_of_the_response() {
         let linear = of(&harvester(0.0, hz), "/loads/0/force_x_n_m/signal", &[hz])[0];
         for (name, linear) in [
             ("input_energy_j.window", linear.input()),
-            ("harvested_energy_j.window", linear.of(EnergyRate::Turbines)),
+            ("harvested_energy_j.window", linear.power(EnergyRate::Turbines)),
         ] {
             let mean = found[name].value * hz / (amplitude * amplitude);
             println!("{hz} Hz {name}: {mean:.6e} {linear:.6e}");
@@ -74,7 +74,10 @@ fn mean_powers_add_up() {
                 EnergyRate::Tubes,
                 EnergyRate::Damping,
             ] {
-                assert!(powers.of(rate) >= -1e-9 * powers.input(), "{input} {hz} Hz: {powers:?}");
+                assert!(
+                    powers.power(rate) >= -1e-9 * powers.input(),
+                    "{input} {hz} Hz: {powers:?}"
+                );
             }
         }
     }

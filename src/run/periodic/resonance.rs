@@ -31,7 +31,7 @@ impl PhaseCondition {
     ///
     /// # Errors
     /// The scene has no cycle, or the beam does not move in it.
-    pub fn of(scene: &PeriodicScene) -> Result<(Self, FamilyState), StepError> {
+    pub fn from_scene(scene: &PeriodicScene) -> Result<(Self, FamilyState), StepError> {
         let mut cycle = shoot(scene, None)?;
         let first = harmonic(scene, &mut cycle)?;
         // the phase at which most of the motion is in its largest deflection

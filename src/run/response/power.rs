@@ -22,14 +22,14 @@ pub struct MeanPowers([f64; ENERGY_RATES.len()]);
 
 impl MeanPowers {
     /// Power of one kind.
-    pub fn of(&self, rate: EnergyRate) -> f64 {
+    pub fn power(&self, rate: EnergyRate) -> f64 {
         self.0[rate as usize]
     }
 
     /// Power put in by loads, ends and ports.
     pub fn input(&self) -> f64 {
         [EnergyRate::Loads, EnergyRate::Ends, EnergyRate::Ports]
-            .map(|rate| self.of(rate))
+            .map(|rate| self.power(rate))
             .iter()
             .sum()
     }
@@ -38,7 +38,7 @@ impl MeanPowers {
     pub fn residual(&self) -> f64 {
         ENERGY_RATES
             .iter()
-            .map(|rate| rate.energy_sign() * self.of(*rate))
+            .map(|rate| rate.energy_sign() * self.power(*rate))
             .sum()
     }
 }

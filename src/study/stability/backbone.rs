@@ -222,7 +222,7 @@ impl BackboneFollower<'_> {
 
     /// Resonance at the first value, from the cycle at the frequency of the mode.
     fn start(&self, value: f64, case: &Case) -> Result<std::result::Result<BackboneStart, String>> {
-        let found = match PhaseCondition::of(&self.reference) {
+        let found = match PhaseCondition::from_scene(&self.reference) {
             Ok((condition, begin)) => {
                 let found = self.find((value, case), &|family| condition.approach(family, &begin))?;
                 found.map(|point| (condition, point))
