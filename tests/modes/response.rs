@@ -145,52 +145,6 @@ fn a_small_cycle_has_the_amplitude_of_the_response() {
     }
 }
 
-/// Source: [E37], cycles of an amplitude of a millionth of the length. Goal: the paper's wirings, shaken along at 20 frequencies, move and press as
-/// their responses say. Tolerance: 1e-4, of the largest value at the frequency that has its unit.
-#[test]
-#[ignore = "one minute"]
-fn small_cycles_of_the_papers_wirings_have_the_amplitude_of_the_response() {
-    let (input, amplitude) = ("/ends/root/clamped/u3_m", 1e-7);
-    for name in ["wiring-1", "wiring-2", "wiring-3"] {
-        let text = std::fs::read_to_string(format!("cases/{name}.json")).unwrap();
-        let case = |signal: Value| {
-            let mut case: Value = serde_json::from_str(&text).unwrap();
-            case["ends"]["root"]["clamped"]["u3_m"] = signal;
-            case["effects"] = json!({"unsteady_friction": "off"});
-            case["solver"] = json!({"rtol": 1e-9});
-            checked(&case)
-        };
-        let outputs = [
-            "tip_u1".to_owned(),
-            "tip_u3".to_owned(),
-            "bladder_1_pressure".to_owned(),
-        ];
-        let response = LinearResponse::new(&case(json!(0.0)), input, &outputs, None).unwrap();
-        let mut solver = response.solver().unwrap();
-        let mut worst = 0.0_f64;
-        for k in 0..20 {
-            let hz = 1.0 * 200.0_f64.powf(f64::from(k) / 19.0);
-            let cycle = case(json!({"sine": {"amplitude": amplitude, "frequency_hz": hz}}));
-            let found = numbers::of_cycle(&cycle, 1, &StopFlag::default()).unwrap();
-            let linear: Vec<f64> = solver.at(hz).unwrap().iter().map(|x| x.norm()).collect();
-            let moved = linear[0].max(linear[1]);
-            for ((output, linear), size) in outputs.iter().zip(&linear).zip([moved, moved, linear[2]]) {
-                let largest = found
-                    .iter()
-                    .find(|(name, _)| name.starts_with(output.as_str()) && name.ends_with("window_max_abs"));
-                let Some((_, largest)) = largest else {
-                    println!("{output} {:?}", found.keys().collect::<Vec<_>>());
-                    continue;
-                };
-                let apart = (largest.value / amplitude - linear).abs() / size;
-                println!("{name} {hz:.3} Hz {output}: {linear:.6e} {apart:.1e}");
-                worst = worst.max(apart);
-            }
-        }
-        println!("{name}: {worst:.1e}");
-    }
-}
-
 /// Goal: a band of one frequency has the response there; it was the static one.
 #[test]
 fn one_frequency_is_a_band() {
