@@ -23,7 +23,7 @@ fn harvester(amplitude: f64, hz: f64) -> Value {
     case
 }
 
-fn of(case: &Value, input: &str, frequencies: &[f64]) -> Vec<MeanPowers> {
+fn powers_of(case: &Value, input: &str, frequencies: &[f64]) -> Vec<MeanPowers> {
     let outputs = ["tip_u1".to_owned()];
     let response = LinearResponse::new(&checked(case), input, &outputs, None).unwrap();
     powers(&response, frequencies).unwrap()
@@ -36,7 +36,7 @@ fn a_small_cycle_has_the_mean_powers_of_the_response() {
         let amplitude = 1e-3;
         let cycle = checked(&harvester(amplitude, hz));
         let found = numbers::of_cycle(&cycle, 1, &StopFlag::default()).unwrap();
-        let linear = of(&harvester(0.0, hz), "/loads/0/force_x_n_m/signal", &[hz])[0];
+        let linear = powers_of(&harvester(0.0, hz), "/loads/0/force_x_n_m/signal", &[hz])[0];
         for (name, linear) in [
             ("input_energy_j.window", linear.input()),
             ("harvested_energy_j.window", linear.power(EnergyRate::Turbines)),
@@ -65,7 +65,7 @@ fn mean_powers_add_up() {
         (shaken, "/ends/root/clamped/u1_m"),
         (pressed, "/network/chains/0/ends/1/pressure_pa"),
     ] {
-        for (hz, powers) in frequencies.iter().zip(of(&case, input, &frequencies)) {
+        for (hz, powers) in frequencies.iter().zip(powers_of(&case, input, &frequencies)) {
             let residual = powers.residual() / powers.input();
             assert!(residual.abs() < 1e-6, "{input} {hz} Hz: {residual:e} {powers:?}");
             for rate in [

@@ -94,7 +94,7 @@ fn the_best_resistance_is_that_of_a_line_search() {
     }
 }
 
-/// Goal: a response without input, an input without response, unknown names, and a band without a peak are told.
+/// Goal: a response without input, an input without response, unknown names, and a band without a peak are reported.
 #[test]
 fn what_a_response_lacks_is_told() {
     let dir = tempfile::tempdir().expect("a folder");

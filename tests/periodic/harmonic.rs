@@ -201,13 +201,18 @@ fn the_command_writes_sidebands() {
         command.output().unwrap()
     };
     let input = ["--input", "/ends/tip/free/force_x_n"];
-    let told = say(
+    let output = say(
         &path("case.json"),
         &[&input[..], &["--about-cycle", "--harmonics", "2"]].concat(),
         "good",
     );
-    let text = String::from_utf8(told.stdout).unwrap();
-    assert_eq!(told.status.code(), Some(0), "{}", String::from_utf8_lossy(&told.stderr));
+    let text = String::from_utf8(output.stdout).unwrap();
+    assert_eq!(
+        output.status.code(),
+        Some(0),
+        "{}",
+        String::from_utf8_lossy(&output.stderr)
+    );
     assert!(text.contains("cycle of 0.8000 Hz"), "{text}");
     let found: Value = serde_json::from_str(&std::fs::read_to_string(path("good/response.json")).unwrap()).unwrap();
     assert_eq!(found["state"], "cycle");
@@ -242,9 +247,9 @@ fn the_command_writes_sidebands() {
             "cannot be used with",
         ),
     ] {
-        let told = say(case, &options, "bad");
-        let error = String::from_utf8(told.stderr).unwrap();
-        assert_eq!(told.status.code(), Some(2), "{error}");
+        let output = say(case, &options, "bad");
+        let error = String::from_utf8(output.stderr).unwrap();
+        assert_eq!(output.status.code(), Some(2), "{error}");
         assert!(error.contains(says), "{error}");
     }
 }

@@ -178,27 +178,8 @@ impl CycleFamily<'_> {
     /// No cycle was found near the prediction.
     pub fn across(&self, predicted: &FamilyState, direction: &[f64]) -> Result<FamilyMember, StepError> {
         let n = predicted.y.len();
-        let off = |_: &PeriodicScene, y: &[f64], coordinate: f64| {
-            let along = dot(&direction[..n], y) - dot(&direction[..n], &predicted.y);
-            along / predicted.size + direction[n] * (coordinate - predicted.coordinate)
-        };
-        self.meet(predicted, direction, &off)
-    }
-
-    /// Finds the cycle of the family near a state for which `off(scene, state, coordinate)` is zero. `direction` is the derivative of
-    /// `off`, by the state in units of the size of `near`, then by the coordinate.
-    ///
-    /// # Errors
-    /// No cycle was found near the state.
-    pub(super) fn meet(
-        &self,
-        near: &FamilyState,
-        direction: &[f64],
-        off: &dyn Fn(&PeriodicScene, &[f64], f64) -> f64,
-    ) -> Result<FamilyMember, StepError> {
-        let n = near.y.len();
-        let unit_size = near.size;
-        let (mut y, mut coordinate) = (near.y.clone(), near.coordinate);
+        let unit_size = predicted.size;
+        let (mut y, mut coordinate) = (predicted.y.clone(), predicted.coordinate);
         let mut search = ShootingRecord::default();
         let (mut case, mut scene) = self.at(self.scale.value(coordinate))?;
         fill(&scene, &mut y);
@@ -207,8 +188,9 @@ impl CycleFamily<'_> {
         for _ in 0..ITERATIONS {
             let slope = self.slope(&scene, &mut march, &y, coordinate)?;
             search.periods += 2;
-            let last = -off(&scene, &y, coordinate);
-            let right: Vec<f64> = slope.open.iter().map(|x| x / unit_size).chain([last]).collect();
+            let off: f64 = dot(&direction[..n], &y) - dot(&direction[..n], &predicted.y);
+            let off = off / unit_size + direction[n] * (coordinate - predicted.coordinate);
+            let right: Vec<f64> = slope.open.iter().map(|x| x / unit_size).chain([-off]).collect();
             let border = Border {
                 by_coordinate: &slope.by_coordinate,
                 size: unit_size,

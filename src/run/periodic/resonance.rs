@@ -79,8 +79,14 @@ impl PhaseCondition {
     /// No such cycle was found near the state.
     pub fn meet(&self, family: &CycleFamily, near: &FamilyState) -> Result<FamilyMember, StepError> {
         let direction: Vec<f64> = self.weights.iter().copied().chain([0.0]).collect();
-        let off = |_: &PeriodicScene, y: &[f64], _: f64| dot(&self.weights, y) / near.size;
-        let found = family.meet(near, &direction, &off)?;
+        let velocity = dot(&self.weights, &near.y);
+        let mut still = near.clone();
+        still
+            .y
+            .iter_mut()
+            .zip(&self.weights)
+            .for_each(|(y, weight)| *y -= velocity * weight);
+        let found = family.across(&still, &direction)?;
         match (found.state.coordinate - near.coordinate).abs() * family.scale.step < FARTHEST {
             true => Ok(found),
             false => Err(lost("Newton's iteration ends at another resonance".into())),

@@ -4,6 +4,7 @@ use nalgebra::Complex;
 
 use super::meshes;
 use super::peaks::NOISE;
+use super::samples::Sampling;
 use crate::case::Case;
 use crate::error::{Error, Result};
 use crate::numerics::golden_section;
@@ -13,8 +14,6 @@ use crate::run::stop::StopFlag;
 
 /// Number of steps in a cycle of the fastest harmonic.
 const STEPS: f64 = 16.0;
-/// Change of a direct response between two samples, relative to the larger one, above which a sample is added between them.
-const CHANGE: f64 = 0.1;
 /// Part of the distance of the samples of the grid in which at most one is added.
 const NARROW: f64 = 1.0 / 16.0;
 /// Golden-section steps of the search for a peak; each leaves 0.62 of the interval.
@@ -152,43 +151,19 @@ impl CycleRequest {
 
     /// Evaluates a response on a grid, and between its frequencies where the direct response changes.
     fn sample(&self, response: &mut CycleResponse, residual: &mut f64) -> Result<(Vec<f64>, Vec<Sample>)> {
-        let [from, to] = self.band;
-        let points = if from < to { self.points } else { 1 };
-        let intervals = (points.max(2) - 1) as f64;
-        let mut at = |hz: f64| -> Result<(f64, Sample)> {
+        let sampling = Sampling {
+            band: self.band,
+            points: self.points,
+            narrow: NARROW,
+            most: usize::MAX,
+        };
+        let at = |hz: f64| -> Result<Sample> {
             let found = response.at(hz, self.harmonics)?;
             *residual = residual.max(found.residual);
-            Ok((hz, found.values))
+            Ok(found.values)
         };
-        // samples still to be added, the next one last
-        let mut ahead = (0..points)
-            .rev()
-            .map(|k| {
-                at(if k + 1 == points {
-                    to
-                } else {
-                    from * (to / from).powf(k as f64 / intervals)
-                })
-            })
-            .collect::<Result<Vec<_>>>()?;
-        let (mut frequencies, mut samples): (Vec<f64>, Vec<Sample>) = (vec![], vec![]);
-        while let Some((hz, sample)) = ahead.pop() {
-            let middle = frequencies.last().zip(samples.last()).and_then(|(before, old)| {
-                let changes = |(a, b): (&Vec<Complex<f64>>, &Vec<Complex<f64>>)| {
-                    let (a, b) = (a[self.harmonics], b[self.harmonics]);
-                    (a - b).norm() > CHANGE * a.norm().max(b.norm())
-                };
-                let wide = (hz / before).ln() > NARROW * (to / from).ln() / intervals;
-                (wide && old.iter().zip(&sample).any(changes)).then(|| (before * hz).sqrt())
-            });
-            if let Some(middle) = middle {
-                ahead.extend([(hz, sample), at(middle)?]);
-            } else {
-                frequencies.push(hz);
-                samples.push(sample);
-            }
-        }
-        Ok((frequencies, samples))
+        let direct = |sample: &Sample| sample.iter().map(|all| all[self.harmonics]).collect();
+        sampling.refine(&sampling.grid(), at, direct)
     }
 
     /// Local maxima of the direct response of an output, each refined by golden-section search.

@@ -7,6 +7,9 @@ mod peaks;
 mod poles;
 pub mod power;
 pub mod reduced;
+mod samples;
+
+use std::convert::Infallible;
 
 use nalgebra::Complex;
 
@@ -14,6 +17,7 @@ use self::approximation::ApproximatedResponse;
 pub use self::peaks::BandPeak;
 use self::peaks::{exact_peaks, peaks};
 pub use self::poles::{BandPole, Poles, growing, poles};
+use self::samples::Sampling;
 use super::refine::finer_along_bladders;
 use crate::case::Case;
 use crate::error::numbers::counted;
@@ -23,8 +27,6 @@ use crate::run::response::LinearResponse;
 
 /// Offsets of the samples near a pole, in units of its decay rate.
 const BESIDE: [f64; 7] = [-4.0, -1.5, -0.5, 0.0, 0.5, 1.5, 4.0];
-/// Change of a response between two samples, relative to the larger one, above which a sample is added between them.
-const CHANGE: f64 = 0.1;
 /// Part of the distance of the samples of the grid in which at most one is added, and largest number of samples with added ones.
 const NARROW: f64 = 1.0 / 32.0;
 const MOST: usize = 4000;
@@ -245,33 +247,19 @@ type Samples = (Vec<f64>, Vec<Vec<Complex<f64>>>);
 /// Evaluates a response on a grid, near poles, and between these frequencies where it changes.
 fn sample(response: &ApproximatedResponse, request: &Request, poles: &[BandPole]) -> Samples {
     let [from, to] = request.band;
-    let points = if from < to { request.points } else { 1 };
-    let steps = (points.max(2) - 1) as f64;
-    let mut frequencies: Vec<f64> = (0..points).map(|k| from * (to / from).powf(k as f64 / steps)).collect();
-    frequencies[points - 1] = to;
+    let sampling = Sampling {
+        band: request.band,
+        points: request.points,
+        narrow: NARROW,
+        most: request.points.max(MOST),
+    };
+    let mut frequencies = sampling.grid();
     for pole in poles {
         let beside = BESIDE.map(|by| (pole.s.im + by * pole.s.re.abs()) / std::f64::consts::TAU);
         frequencies.extend(beside.into_iter().filter(|f| (from..=to).contains(f)));
     }
     frequencies.sort_by(f64::total_cmp);
     frequencies.dedup_by(|a, b| *a <= *b * (1.0 + 1e-12));
-    // samples still to be added, the next one last
-    let mut ahead: Vec<(f64, Vec<Complex<f64>>)> = frequencies.iter().rev().map(|f| (*f, response.at(*f))).collect();
-    let (mut frequencies, mut values) = (vec![], vec![]);
-    while let Some((f, value)) = ahead.pop() {
-        let before = frequencies.last().zip(values.last());
-        let middle = before.and_then(|(before, old): (&f64, &Vec<Complex<f64>>)| {
-            let changes = |(a, b): (&Complex<f64>, &Complex<f64>)| (a - b).norm() > CHANGE * a.norm().max(b.norm());
-            let wide = (f / before).ln() > NARROW * (to / from).ln() / steps
-                && frequencies.len() + ahead.len() < points.max(MOST);
-            (wide && old.iter().zip(&value).any(changes)).then(|| (before * f).sqrt())
-        });
-        if let Some(middle) = middle {
-            ahead.extend([(f, value), (middle, response.at(middle))]);
-        } else {
-            frequencies.push(f);
-            values.push(value);
-        }
-    }
-    (frequencies, values)
+    let Ok(samples) = sampling.refine(&frequencies, |hz| Ok::<_, Infallible>(response.at(hz)), Vec::clone);
+    samples
 }
