@@ -6,12 +6,18 @@
 //! | [`colour`] | columns that may be differentiated together |
 //! | [`lu`] | LU factors by the cheaper of the next two methods |
 //! | [`tridiagonal`] | LU factors of small dense blocks along a line |
+//! | `condense` | unknowns that a row of two entries expresses by another one |
+//! | [`complex`] | LU factors of complex matrices |
+//! | `exchange` | exchange of rows, so that KLU finds its pivots on the diagonal |
 //! | `groups` | counting sort of items by group |
 //! | [`klu`] | sparse LU factors, real and complex, with a guard against stale pivots |
 
 #![allow(unsafe_code)]
 
 pub mod colour;
+pub mod complex;
+mod condense;
+mod exchange;
 mod groups;
 pub mod klu;
 pub mod lu;

@@ -4,7 +4,6 @@
 //! |---|---|
 //! | [`pencil`] | the pencil, its products and its factors at a shift |
 //! | `schur` | Schur form of a small matrix, its ordering and its eigenvectors |
-//! | `exchange` | exchange of rows, so that KLU finds its pivots on the diagonal |
 //! | `dense` | all finite eigenvalues of a small pencil |
 //! | `krylov` | eigenvalues nearest a shift, for a large pencil |
 //! | `lowest` | lowest eigenvalues of a static tangent |
@@ -24,7 +23,6 @@
 //! depends on Fortran, BLAS and LAPACK and does not separate repeated eigenvalues.
 
 mod dense;
-mod exchange;
 mod growing;
 mod krylov;
 mod lowest;
@@ -216,8 +214,8 @@ pub fn nearest(
     Ok(Eigenvalues {
         pairs: refined,
         finite: size,
-        factorizations: shifted.klu.factorizations,
-        solves: shifted.klu.solves,
+        factorizations: shifted.lu.factorizations,
+        solves: shifted.lu.solves,
         restarts,
         dense,
     })

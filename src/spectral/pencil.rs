@@ -3,11 +3,10 @@
 use nalgebra::Complex;
 
 use super::SpectralError;
-use super::exchange::Exchanged;
 use crate::integrate::halt;
 use crate::sparse::KluError;
 use crate::sparse::Pattern;
-use crate::sparse::klu::complex::ComplexKlu;
+use crate::sparse::complex::ComplexLu;
 
 /// Two real sparse matrices with a common pattern.
 #[derive(Clone, Copy, Debug)]
@@ -58,12 +57,10 @@ pub(super) struct Shifted<'a> {
     pub pencil: Pencil<'a>,
     /// σ, shifted slightly if it is an eigenvalue.
     pub shift: Complex<f64>,
-    pub klu: ComplexKlu,
-    exchanged: Exchanged,
+    pub lu: ComplexLu,
     /// Unknowns whose column of B is not zero.
     pub differential: Vec<usize>,
     values: Vec<Complex<f64>>,
-    reordered: Vec<Complex<f64>>,
     full: Vec<Complex<f64>>,
 }
 
@@ -75,18 +72,15 @@ impl<'a> Shifted<'a> {
         let n = pencil.pattern.columns();
         let entries = pencil.a.iter().zip(pencil.b);
         let values: Vec<_> = entries.map(|(a, b)| shift * *b + a).collect();
-        let exchanged = Exchanged::new(pencil.pattern, &values);
-        let klu = ComplexKlu::new(&exchanged.pattern).map_err(failure)?;
+        let lu = ComplexLu::new(pencil.pattern, &values).map_err(failure)?;
         let differential = (0..n)
             .filter(|&j| pencil.pattern.column(j).any(|e| pencil.b[e] != 0.0))
             .collect();
         let mut shifted = Self {
             pencil: *pencil,
             shift,
-            klu,
-            exchanged,
+            lu,
             differential,
-            reordered: Vec::with_capacity(values.len()),
             values,
             full: vec![Complex::default(); n],
         };
@@ -112,8 +106,7 @@ impl<'a> Shifted<'a> {
             for ((value, a), b) in self.values.iter_mut().zip(self.pencil.a).zip(self.pencil.b) {
                 *value = moved * *b + a;
             }
-            self.exchanged.values(&self.values, &mut self.reordered);
-            match self.klu.factor(&self.reordered) {
+            match self.lu.factor(&self.values) {
                 Ok(()) => return Ok(moved),
                 Err(fault) => last = failure(fault),
             }
@@ -129,21 +122,18 @@ impl<'a> Shifted<'a> {
                 self.full[self.pencil.pattern.rows[entry] as usize] += v * self.pencil.b[entry];
             }
         }
-        self.exchanged.rows(&mut self.full);
-        self.klu.solve(&mut self.full);
+        self.lu.solve(&mut self.full);
         &self.full
     }
 
     /// Replaces `b` by the solution of `(A + σ B) x = b`.
     pub fn solve(&mut self, b: &mut [Complex<f64>]) {
-        self.exchanged.rows(b);
-        self.klu.solve(b);
+        self.lu.solve(b);
     }
 
     /// Replaces `b` by the solution of `(A + σ B)ᴴ x = b`.
     pub fn solve_adjoint(&mut self, b: &mut [Complex<f64>]) {
-        self.klu.solve_adjoint(b);
-        self.exchanged.rows(b);
+        self.lu.solve_adjoint(b);
     }
 
     /// `K v`.

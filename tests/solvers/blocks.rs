@@ -1,5 +1,7 @@
 //! Factorization in dense blocks along a line.
 
+use nalgebra::Complex;
+use slcbeam::sparse::complex::ComplexLu;
 use slcbeam::sparse::{BlockTridiagonal, KluError, Lu, Pattern};
 
 use super::sundials::chance::Random;
@@ -235,4 +237,70 @@ fn what_blocks_cannot_do_goes_to_klu() {
     assert!(!lu.solve(&mut vec![1.0; n]), "no factors are left");
     lu.factor(&sound.values).unwrap();
     assert!(sound.error(|b| assert!(lu.solve(b))) < 1e-12);
+}
+
+/// A chain of cells as `A + s B` with two memory variables each, `m' = (q - m)/τ`, that act on the first unknown q of their cell.
+fn remembering(count: usize, s: Complex<f64>) -> (Pattern, Vec<Complex<f64>>) {
+    let kinds = 3;
+    let chain = cells(count, kinds, 1, false, 1.0);
+    let n = chain.pattern.columns();
+    let memories = 2 * count;
+    let mut entries: Vec<(usize, usize, Complex<f64>)> = vec![];
+    for column in 0..n {
+        for entry in chain.pattern.column(column) {
+            let row = chain.pattern.rows[entry] as usize;
+            entries.push((row, column, chain.values[entry] + s * 0.1 * chain.values[entry]));
+        }
+    }
+    for memory in 0..memories {
+        let (m, q) = (n + memory, memory / 2 * (kinds + 1) + 1);
+        let tau = [0.5, 0.02][memory % 2];
+        entries.extend([(m, m, 1.0 + s * tau), (m, q, (-1.0).into()), (q, m, 0.3.into())]);
+    }
+    let mut columns = vec![vec![]; n + memories];
+    entries.iter().for_each(|(row, column, _)| columns[*column].push(*row));
+    let pattern = Pattern::from_columns(&columns);
+    let mut values = vec![Complex::default(); pattern.entries()];
+    for (row, column, value) in entries {
+        let own = pattern.column(column);
+        let entry = own.start + pattern.rows[own].iter().position(|r| *r as usize == row).unwrap();
+        values[entry] = value;
+    }
+    (pattern, values)
+}
+
+/// Complex matrices at several shifts by the same factors, one of them -1/τ, at which the memory has no pivot of its own.
+///
+/// Goal: known solutions of the matrix and of its adjoint. Tolerance: rounding times a condition below 1e4.
+#[test]
+fn complex_matrices_with_memory_are_solved() {
+    let shifts = [
+        Complex::new(0.0, 3.0),
+        Complex::new(0.0, 200.0),
+        Complex::new(-2.0, 0.0),
+        Complex::new(1.0, -0.5),
+    ];
+    let (pattern, first) = remembering(40, shifts[0]);
+    let mut lu = ComplexLu::new(&pattern, &first).unwrap();
+    for s in shifts {
+        let (_, values) = remembering(40, s);
+        lu.factor(&values).unwrap();
+        let x: Vec<_> = (0..pattern.columns())
+            .map(|k| Complex::new((1.7 * k as f64).sin(), (0.6 * k as f64).cos()))
+            .collect();
+        let (mut b, mut adjoint) = (vec![Complex::default(); x.len()], vec![Complex::default(); x.len()]);
+        for column in 0..x.len() {
+            for entry in pattern.column(column) {
+                let row = pattern.rows[entry] as usize;
+                b[row] += values[entry] * x[column];
+                adjoint[column] += values[entry].conj() * x[row];
+            }
+        }
+        assert!(lu.solve(&mut b) && lu.solve_adjoint(&mut adjoint));
+        for found in [b, adjoint] {
+            let error = found.iter().zip(&x).map(|(a, b)| (a - b).norm()).fold(0.0, f64::max);
+            assert!(error < 1e-10, "s = {s}: {error:e}");
+        }
+    }
+    assert_eq!(lu.factorizations, shifts.len() as u64);
 }

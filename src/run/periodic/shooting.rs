@@ -25,8 +25,9 @@ pub(super) const MOST_DISTURBANCES: usize = 300;
 const ITERATIONS: usize = 30;
 /// Smallest fraction of a Newton step.
 const SHORTEST: f64 = 1.0 / 64.0;
-/// Number of periods simulated before a second attempt.
+/// Number of periods simulated before a second attempt, doubled before each further one, and number of further attempts.
 const PATIENCE: usize = 12;
+const ATTEMPTS: u32 = 4;
 
 /// A state that recurs after a period.
 pub struct Cycle {
@@ -85,9 +86,16 @@ pub fn shoot(scene: &PeriodicScene, from: Option<&[f64]>) -> Result<Cycle, StepE
     match attempt(scene, begin.to_vec(), &mut search) {
         Ok(cycle) => Ok(cycle),
         Err(error) if scene.stop.raised() => Err(error),
-        Err(_) => {
-            let later = scene.go_on(&scene.guess, PATIENCE, &mut search)?;
-            attempt(scene, later, &mut search)
+        Err(first) => {
+            let (mut later, mut last) = (scene.guess.clone(), first);
+            for k in 0..ATTEMPTS {
+                later = scene.go_on(&later, PATIENCE << k, &mut search)?;
+                match attempt(scene, later.clone(), &mut search) {
+                    Err(error) if !scene.stop.raised() => last = error,
+                    found => return found,
+                }
+            }
+            Err(last)
         }
     }
 }

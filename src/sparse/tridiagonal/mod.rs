@@ -1,6 +1,6 @@
 //! LU factors of block tridiagonal matrices: unknowns coupled along a line.
 //!
-//! Unknowns that a row of two entries expresses by another one are eliminated first ([`condense`]). The rest is ordered in levels of its
+//! Unknowns that a row of two entries expresses by another one are eliminated first ([`condense`](super::condense)). The rest is ordered in levels of its
 //! graph, by distance from an end node. Each level is a small dense block, adjacent only to the level before and the one after
 //! ([`levels`]). Elimination proceeds from both ends to a block in the middle: two independent chains of operations (a twisted
 //! factorization).
@@ -13,7 +13,6 @@
 //! Rows are exchanged only within blocks. After every factorization, a test solution checks that this was sufficient: its backward error
 //! must be small (Oettli & Prager 1964).
 
-mod condense;
 mod dense;
 mod levels;
 mod plan;

@@ -2,10 +2,10 @@
 
 use std::ops::Range;
 
-use super::condense::CondensedMatrix;
 use super::dense::{LANES, padded, place};
 use super::levels::Graph;
 use crate::numerics::threads::LARGE;
+use crate::sparse::condense::CondensedMatrix;
 use crate::sparse::{Pattern, groups::groups};
 
 /// Largest number of unknowns of a block merged from neighboring levels.
@@ -82,7 +82,7 @@ impl Plan {
     pub fn new(pattern: &Pattern, most: usize) -> Option<Self> {
         let n = pattern.columns();
         u32::try_from(pattern.entries()).ok()?;
-        let condensed = CondensedMatrix::new(pattern);
+        let condensed = CondensedMatrix::new(pattern, |_| true);
         let (node_of, unknown_of) = nodes(&condensed, n);
         let row_node = row_nodes(&condensed, &node_of);
         let edges = edges(pattern, &condensed, &node_of, &row_node);

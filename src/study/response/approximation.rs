@@ -2,10 +2,12 @@
 
 use nalgebra::Complex;
 
+use super::BandPole;
 use crate::error::Result;
+use crate::integrate::halt;
 use crate::numerics::rational::{AxisSamples, RationalFit, relative_error};
-use crate::run::response::LinearResponse;
-use crate::study::in_halves;
+use crate::numerics::threads;
+use crate::run::response::{Frequencies, LinearResponse};
 
 /// Samples of a decade at first, and in all.
 const PER_DECADE: f64 = 12.0;
@@ -57,16 +59,17 @@ impl ApproximatedResponse {
         let grid = (0..=steps as usize).map(|k| (from * (to / from).powf(k as f64 / steps)).min(to));
         let mut omega: Vec<f64> = grid.collect();
         omega.dedup();
+        let mut exact = Solvers::new(response)?;
         let mut samples = AxisSamples {
-            values: exact(response, &omega)?,
+            values: exact.at(&omega)?,
             omega,
         };
         let medians = samples.medians();
-        if let Some(gain) = static_gain(response, samples.omega[0], &medians)? {
+        if let Some(gain) = static_gain(&mut exact, samples.omega[0], &medians)? {
             samples.insert(0.0, gain);
         }
         let apart = narrow(poles, &samples.omega, [from, to]);
-        for (omega, values) in apart.iter().zip(exact(response, &apart)?) {
+        for (omega, values) in apart.iter().zip(exact.at(&apart)?) {
             samples.insert(*omega, values);
         }
         let mut open: Vec<f64> = samples.omega.clone();
@@ -83,7 +86,7 @@ impl ApproximatedResponse {
             }
             fresh.sort_by(f64::total_cmp);
             fresh.dedup();
-            let values = exact(response, &fresh)?;
+            let values = exact.at(&fresh)?;
             let errors: Vec<f64> = (fresh.iter().zip(&values))
                 .map(|(omega, values)| relative_error(&fit.at(*omega), values, &medians))
                 .collect();
@@ -121,6 +124,16 @@ impl ApproximatedResponse {
         self.fit.at(std::f64::consts::TAU * hz)
     }
 
+    /// Poles with positive imaginary part. The error bound is the distance to the nearest pole of an approximation of the same samples
+    /// whose permitted error is larger by the factor `coarser`.
+    pub(super) fn confirmed_poles(&self, coarser: f64) -> Vec<BandPole> {
+        let permitted = coarser * self.error.max(f64::EPSILON);
+        let other = RationalFit::new(&self.samples, &self.medians, permitted).poles();
+        let bound = |s: Complex<f64>| other.iter().map(|p| (p - s).norm()).fold(f64::INFINITY, f64::min);
+        let poles = self.fit.poles().into_iter().filter(|s| s.im > 0.0);
+        poles.map(|s| BandPole { s, bound: bound(s) }).collect()
+    }
+
     /// Error at a frequency [Hz]: the larger one of the samples on either side. Rounding errors at sharp peaks remain there.
     pub fn error_at(&self, hz: f64) -> f64 {
         let next = self
@@ -132,19 +145,32 @@ impl ApproximatedResponse {
     }
 }
 
-/// Exact responses at angular frequencies.
-fn exact(response: &LinearResponse, omega: &[f64]) -> Result<Vec<Vec<Complex<f64>>>> {
-    in_halves(omega, |part| {
-        let mut solver = response.solver()?;
-        let hz = part.iter().map(|omega| omega / std::f64::consts::TAU);
-        hz.map(|hz| solver.at(hz)).collect()
-    })
+/// Solvers in two threads.
+struct Solvers<'a>([Frequencies<'a>; 2]);
+
+impl<'a> Solvers<'a> {
+    fn new(response: &'a LinearResponse) -> Result<Self> {
+        Ok(Self([response.solver()?, response.solver()?]))
+    }
+
+    /// Exact responses at angular frequencies.
+    fn at(&mut self, omega: &[f64]) -> Result<Vec<Vec<Complex<f64>>>> {
+        let (first, second) = omega.split_at(omega.len() / 2);
+        let part = |solver: &mut Frequencies, omega: &[f64]| -> Result<Vec<_>> {
+            let hz = omega.iter().map(|omega| omega / std::f64::consts::TAU);
+            hz.map(|hz| solver.at(hz)).collect()
+        };
+        let heard = &halt::heard();
+        let [one, other] = &mut self.0;
+        let (first, second) = threads::both(|| heard.during(|| part(one, first)), || part(other, second));
+        Ok([first?, second?].concat())
+    }
 }
 
 /// Limit of all outputs at s = 0, if there is one: equations at s = 0 are singular if a volume of fluid is enclosed.
-fn static_gain(response: &LinearResponse, first: f64, medians: &[f64]) -> Result<Option<Vec<Complex<f64>>>> {
+fn static_gain(exact: &mut Solvers, first: f64, medians: &[f64]) -> Result<Option<Vec<Complex<f64>>>> {
     for slow in STATIC {
-        let slow = exact(response, &[slow * first])?.swap_remove(0);
+        let slow = exact.at(&[slow * first])?.swap_remove(0);
         let real = |(value, median): (&Complex<f64>, &f64)| {
             value.im.abs() <= QUASI_STATIC * value.re.abs().max(QUASI_STATIC * median)
         };

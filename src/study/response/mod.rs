@@ -16,7 +16,7 @@ use nalgebra::Complex;
 use self::approximation::ApproximatedResponse;
 pub use self::peaks::BandPeak;
 use self::peaks::{exact_peaks, peaks};
-pub use self::poles::{BandPole, Poles, growing, poles};
+pub use self::poles::{BandPole, Poles, growing, poles, unsearched};
 use self::samples::Sampling;
 use super::refine::finer_along_bladders;
 use crate::case::Case;
@@ -141,14 +141,17 @@ pub fn respond_on_mesh(case: &Case, request: &Request, response: LinearResponse)
         unknown.push(format!("poles: {why}"));
         Poles {
             whole: true,
+            searched: true,
             ..Poles::default()
         }
     });
+    unknown.extend(unsearched(response.about.y.len()));
     let known: Vec<_> = found.poles.iter().map(|pole| pole.s).collect();
     let approximated = ApproximatedResponse::new(&response, request.around(), &known, OWN)?;
     found.complete(&response, &approximated, request.around());
-    let Poles { poles, growing, .. } = found;
+    let Poles { mut poles, growing, .. } = found;
     let (frequencies, mut curves) = curves(&response, &approximated, request, &poles);
+    poles.retain(BandPole::confirmed);
     exact_peaks(&response, &mut curves)?;
     Ok(BandResponse {
         response,

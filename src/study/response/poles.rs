@@ -4,16 +4,24 @@ use nalgebra::Complex;
 
 use super::approximation::ApproximatedResponse;
 use crate::case::Case;
+use crate::error::numbers::counted;
 use crate::run::modes;
 use crate::run::response::LinearResponse;
 use crate::spectral::{self, EigenvalueOptions};
 
 /// Relative distance of an eigenvalue from the pole of an approximation that stands for it.
 const NEAR_POLE: f64 = 0.02;
+/// Error bound over the decay rate up to which a damping ratio is known.
+const OF_DAMPING: f64 = 0.05;
 /// Relative difference of one eigenvalue found twice.
 const SAME_POLE: f64 = 1e-6;
-/// Largest number of pole pairs to compute in the band.
+/// Largest number of pole pairs to compute in the band, and largest number of unknowns of a system in which they are searched.
 const POLES: usize = 48;
+const SEARCHED: usize = 4000;
+/// Permitted error of the approximation whose poles confirm others, over that of the approximation.
+const COARSER: f64 = 10.0;
+/// Ratio of a real part to its error bound above which its sign is certain.
+const CERTAIN: f64 = 10.0;
 
 /// A pole in the band.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -24,8 +32,20 @@ pub struct BandPole {
     pub bound: f64,
 }
 
-/// Poles in a band, and the number of poles with positive real part. The search omits the memory of unsteady friction, whose many decay
-/// modes would crowd it; each pole is corrected afterwards.
+impl BandPole {
+    /// True if another approximation has this pole, too.
+    pub fn confirmed(&self) -> bool {
+        self.bound < NEAR_POLE * self.s.norm()
+    }
+
+    /// True if its damping is known.
+    pub fn has_damping(&self) -> bool {
+        self.s.re == 0.0 || self.bound < OF_DAMPING * self.s.re.abs()
+    }
+}
+
+/// Poles in a band, and those with positive real part. The search omits the memory of unsteady friction, whose many decay modes would
+/// crowd it; each pole is corrected afterwards. Large systems are not searched: [`Poles::complete`] finds the poles that outputs show.
 ///
 /// # Errors
 /// The poles cannot be computed.
@@ -36,6 +56,9 @@ pub fn poles(
     band: [f64; 2],
 ) -> std::result::Result<Poles, String> {
     let words = |failure: spectral::SpectralError| failure.to_string();
+    if response.about.y.len() > SEARCHED {
+        return Ok(Poles::default());
+    }
     let apart = response.remembers.then(|| plain(case, at)).transpose()?;
     let plain = apart.as_ref().unwrap_or(&response.about);
     let tau = std::f64::consts::TAU;
@@ -65,7 +88,12 @@ pub fn poles(
         poles.push(BandPole { s, bound });
     }
     poles.retain(|pole| (from..=to).contains(&pole.s.im));
-    let mut found = Poles { poles, growing, whole };
+    let mut found = Poles {
+        poles,
+        growing,
+        whole,
+        searched: true,
+    };
     found.sort();
     Ok(found)
 }
@@ -79,6 +107,8 @@ pub struct Poles {
     pub growing: Vec<Complex<f64>>,
     /// False if the band may contain further poles.
     pub whole: bool,
+    /// False if no pole was searched in a large system.
+    pub searched: bool,
 }
 
 impl Poles {
@@ -87,11 +117,18 @@ impl Poles {
         self.poles.dedup_by(|a, b| (a.s - b.s).norm() < 1e-9 * b.s.norm());
     }
 
-    /// Adds poles that outputs show: the eigenvalues nearest to the poles of an approximation in a band [Hz], where a search for the
-    /// nearest to its middle finds others first.
+    /// Adds poles that outputs show in a band [Hz] and the search did not find: eigenvalues nearest to the poles of an approximation. In a
+    /// large system they are poles of the approximation; the error bound is the difference to those of a coarser one.
     pub(super) fn complete(&mut self, response: &LinearResponse, shown: &ApproximatedResponse, band: [f64; 2]) {
         let [from, to] = band.map(|hz| std::f64::consts::TAU * hz);
         let within = |s: Complex<f64>| (from..=to).contains(&s.im);
+        if !self.searched {
+            self.poles = shown.confirmed_poles(COARSER);
+            self.poles.retain(|pole| within(pole.s));
+            let grows = |pole: &&BandPole| pole.s.re > CERTAIN * pole.bound;
+            self.growing = self.poles.iter().filter(grows).map(|pole| pole.s).collect();
+            return self.sort();
+        }
         let poles = if self.whole { vec![] } else { shown.fit.poles() };
         for about in poles.into_iter().filter(|s| within(*s)) {
             let nearest = spectral::nearest(&response.about.pencil(), about, 2, &EigenvalueOptions::default());
@@ -125,6 +162,16 @@ fn plain(case: &Case, at: Option<f64>) -> std::result::Result<modes::Linearised,
 /// Eigenvalues with positive real part, one of each conjugate pair.
 fn growing_among(pairs: &[spectral::EigenPair]) -> impl Iterator<Item = &spectral::EigenPair> {
     pairs.iter().filter(|pair| pair.s.im >= 0.0 && pair.s.re > pair.error)
+}
+
+/// Reason why growing modes may be unknown in a system with this number of unknowns, if it is not searched.
+pub fn unsearched(unknowns: usize) -> Option<String> {
+    (unknowns > SEARCHED).then(|| {
+        format!(
+            "modes that no output shows, growing ones among them: they are not searched in {}. Use `slcbeam modes` near a frequency",
+            counted(unknowns as u64, "unknown")
+        )
+    })
 }
 
 /// Number of growing poles, or conjugate pairs, near the characteristic frequency of the state.

@@ -224,6 +224,8 @@ fn range(kind: &str, text: &str) -> std::result::Result<Vec<Value>, String> {
             _ => low + (high - low) * share,
         }
     };
+    // 15 digits: 0.1 + 0.2 is 0.3
+    let value = |k: usize| format!("{:.14e}", value(k)).parse().unwrap_or_else(|_| value(k));
     Ok((0..count).map(|k| number(value(k))).collect())
 }
 
@@ -276,5 +278,16 @@ pub fn plain(value: Value) -> Value {
     match &value {
         Value::Number(own) if own.is_f64() => own.as_f64().map_or(value, number),
         _ => value,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn equally_spaced_values_are_decimal_fractions() {
+        let values = range("lin", "0.1:0.7:7").map(Value::from);
+        assert_eq!(values, Ok(serde_json::json!([0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7])));
     }
 }

@@ -3,7 +3,7 @@
 //! `a x_e + c x_o = b_r` is solved for `x_e`, whose column is added to that of `x_o`. For a beam, velocities are eliminated by
 //! `cj u - v = b`.
 
-use crate::sparse::Pattern;
+use super::Pattern;
 
 /// Largest number of entries that a column may add to the column it is merged with.
 const MORE: usize = 2;
@@ -29,7 +29,8 @@ pub(super) struct CondensedMatrix {
 }
 
 impl CondensedMatrix {
-    pub fn new(pattern: &Pattern) -> Self {
+    /// Selects the pairs of a square pattern, among those that are `suitable`.
+    pub fn new(pattern: &Pattern, suitable: impl Fn(&Elimination) -> bool) -> Self {
         let n = pattern.columns();
         let mut rows: Vec<[u32; 3]> = vec![[0, 0, 0]; n]; // count, first entries
         let mut columns: Vec<[u32; 2]> = vec![[0, 0]; n];
@@ -68,6 +69,14 @@ impl CondensedMatrix {
             if anchor[e] || this.by[e].is_some() || this.by[o].is_some() || more(pattern, e, o, row) > MORE {
                 continue;
             }
+            let pair = Elimination {
+                row: row as u32,
+                given,
+                kept,
+            };
+            if !suitable(&pair) {
+                continue;
+            }
             if row == o {
                 // the row of the eliminated unknown remains and is paired with the other unknown
                 if this.row[o] as usize != o {
@@ -77,11 +86,7 @@ impl CondensedMatrix {
             }
             anchor[o] = true;
             this.by[e] = Some(this.pairs.len() as u32);
-            this.pairs.push(Elimination {
-                row: row as u32,
-                given,
-                kept,
-            });
+            this.pairs.push(pair);
         }
         this
     }

@@ -2,7 +2,7 @@
 
 use nalgebra::Complex;
 
-use crate::sparse::Pattern;
+use super::Pattern;
 
 /// Pattern with pairwise exchanged rows.
 ///
