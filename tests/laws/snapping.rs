@@ -4,7 +4,7 @@ use serde_json::{Value, json};
 use slcbeam::error::Error;
 
 use crate::jacobian::agrees;
-use crate::network::{elastic, last, near, parse, run, still, tube};
+use crate::network::{at_rest, elastic, last, near, parse, run, still, tube};
 use crate::pump_curves::pchip;
 
 const VOLUMES: [f64; 6] = [-2e-8, 0.0, 3e-8, 9e-8, 1.2e-7, 1.3e-7];
@@ -105,6 +105,30 @@ fn a_vessel_opens_a_valve() {
         println!("energy balance: {:e}", summary.balances.energy_residual_relative);
         assert!(summary.balances.energy_residual_relative.abs() < 1e-6);
     }
+}
+
+/// Goal: the equilibrium under a supply beyond the snap is found through both folds of the load path, on the falling branch, where the valve
+/// lets out what enters.
+#[test]
+fn an_equilibrium_is_found_beyond_folds() {
+    let (supply, narrow, wide) = (8e4, 4e9, 2e8);
+    let mut valve = tube("d", "r", wide);
+    valve["pilot"] = json!({"vessel": "dome", "closed_at_m3": 4e-8, "open_at_m3": 8e-8});
+    let case = still(
+        json!({"junctions": ["d", "r", "s"], "tubes": [valve, tube("s", "d", narrow)],
+            "ports": [port("r", 0.0), port("s", supply)], "accumulators": [dome("d")]}),
+        1.0,
+    );
+    let (mut low, mut high) = (4e-8, 8e-8);
+    for _ in 0..100 {
+        let middle = 0.5 * (low + high);
+        let (p, x) = (pchip(&VOLUMES, &PRESSURES, middle), (middle - 4e-8) / 4e-8);
+        let opening = x * x * x * (x * (6.0 * x - 15.0) + 10.0);
+        let filled = (supply - p) / narrow - opening * p / wide;
+        *(if filled > 0.0 { &mut low } else { &mut high }) = middle;
+    }
+    let exact = pchip(&VOLUMES, &PRESSURES, low);
+    near("pressure", at_rest(&case, "accumulator_dome_pressure"), exact, 1e-9);
 }
 
 /// Goal: the Jacobian contains the coupling of valves to vessels for creeping flow, for flow with inertia and losses, for compressed

@@ -12,6 +12,7 @@ use slcbeam::run::modes::{self, ModeOptions};
 use slcbeam::run::periodic::{record, scene, subharmonic};
 use slcbeam::run::record::{Control, Memory, Unrecorded};
 use slcbeam::run::summary::Status;
+use slcbeam::study::analysis::{AnalysisKind, AnalysisRequest, found};
 
 /// Resistances of supply, valve and dome [Pa s/m^3]; compliance of the bag [m^3/Pa].
 const SUPPLY: f64 = 4e9;
@@ -204,6 +205,36 @@ fn a_relaxation_oscillation_begins_as_a_small_model_says() {
         let grows = found.modes.iter().any(|mode| mode.s.re > 0.0);
         assert_eq!(grows, trace > 0.0, "{share}");
     }
+}
+
+/// Goal: the analysis of `sweep` and `optimize` has the figures of the cycle, and fails where nothing oscillates.
+#[test]
+fn designs_have_periods_of_their_own() {
+    let analysis = AnalysisKind::Periodic.analysis();
+    let figures = |supply: f64, end: f64| {
+        let case = oscillator([supply, 1.0, DOME], [end, 1e-6]);
+        analysis.check(&case).unwrap();
+        let ask = AnalysisRequest {
+            what: &AnalysisKind::Periodic,
+            accuracy: None,
+            from: None,
+            meshes: false,
+        };
+        found(&case, ask, &|| false, &|_| unreachable!("no run is needed"))
+    };
+    let at = oscillator([8e4, 1.0, DOME], [2.0, 1e-6]);
+    let period = subharmonic::find(&at, 1).unwrap().0.drive.period;
+    let design = figures(8e4, 2.0).unwrap();
+    assert!((design.figure("period_s").unwrap() / period - 1.0).abs() < 1e-5);
+    assert_eq!(design.figure("stable"), Some(1.0));
+    // the supply does not reach the pressure at which the dome snaps
+    let resting = figures(3.5e4, 12.0).unwrap();
+    let reason = resting.reason.unwrap();
+    assert_eq!(resting.status, Status::Failed);
+    assert!(
+        reason.contains("comes to rest") && !reason.contains("Amplitude"),
+        "{reason}"
+    );
 }
 
 /// The shipped finger beats: its cycle is stable, and the tip moves by more than half of its largest deflection.

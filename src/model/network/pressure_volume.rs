@@ -46,9 +46,10 @@ impl PressureVolumeCurve {
         self.curve.ends().unwrap_or_default()
     }
 
-    /// Slopes dP/dV at the first and the last point [Pa/m^3].
-    pub fn end_slopes(&self) -> [f64; 2] {
-        self.ends().map(|end| self.curve.at(end).rate)
+    /// Range of the volumes of the points [m^3].
+    pub fn range(&self) -> f64 {
+        let [first, last] = self.ends();
+        last - first
     }
 
     /// `P(V)` [Pa].
@@ -110,15 +111,9 @@ impl PressureVolumeCurve {
 
     /// Range of volume over range of pressure of the points, a mean compliance [m^3/Pa].
     pub fn mean_compliance(&self) -> f64 {
-        let [first, last] = self.ends();
         let pressures = || self.works.iter().map(|[volume, _]| self.at(*volume).0);
         let range = pressures().fold(f64::MIN, f64::max) - pressures().fold(f64::MAX, f64::min);
-        (last - first) / range
-    }
-
-    /// Smallest slope dP/dV [Pa/m^3], negative if the vessel snaps.
-    pub fn steepest_fall(&self) -> f64 {
-        self.curve.rates()[0]
+        self.range() / range
     }
 }
 
