@@ -331,6 +331,8 @@ const INDEX: &[(&str, &str, &str)] = &[
         "tests/modes/power.rs",
         "a_small_cycle_has_the_mean_powers_of_the_response",
     ),
+    ("[E102]", "tests/laws/snapping.rs", "a_snapping_dome_follows_its_curve"),
+    ("[E103]", "tests/laws/snapping.rs", "a_vessel_opens_a_valve"),
 ];
 
 #[test]

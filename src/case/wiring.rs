@@ -2,7 +2,9 @@
 
 use super::check;
 use super::faults::Violations;
-use super::schema::{Accumulator, BladderEnd, Case, CheckValve, CrossSection, Elevation, Pump, TubeDefaults, Turbine};
+use super::schema::{
+    Accumulator, BladderEnd, Case, CheckValve, CrossSection, Elevation, Pilot, Pump, TubeDefaults, Turbine,
+};
 use crate::error::Result;
 use crate::functions::Signal;
 
@@ -32,6 +34,8 @@ pub struct WiringTube<'a> {
     pub roughness_m: f64,
     /// Opening of its valve.
     pub opening: &'a Signal,
+    /// Accumulator that opens the valve, with its volumes.
+    pub pilot: Option<(usize, &'a Pilot)>,
     /// Its check valve.
     pub check_valve: Option<&'a CheckValve>,
     /// Its pump.

@@ -3,7 +3,7 @@
 use std::ops::Range;
 
 use super::injected_volume::{self, InjectedShare};
-pub use super::mesh_links::{LinkEnd, MeshAccumulator, MeshBridge, MeshFlow, MeshLink, MeshSource};
+pub use super::mesh_links::{LinkEnd, MeshAccumulator, MeshBridge, MeshFlow, MeshLink, MeshPilot, MeshSource};
 use super::sorted_links::SortedLinks;
 use crate::case::schema::BladderEnd;
 use crate::model::network::{AccumulatorLaw, FlowLaw, Link, NetworkNode};
@@ -133,6 +133,7 @@ impl FluidMesh {
                 pump,
                 head: link.head,
                 check_valve: link.check_valve,
+                pilot: None,
                 kind: Some(link.kind),
                 flow: law(link, [from, to])
                     .or_else(|| pump_curve.as_ref().map(|_| FlowLaw::default()))
@@ -154,6 +155,7 @@ impl FluidMesh {
                 pump_curve: None,
                 head: 0.0,
                 check_valve: None,
+                pilot: None,
                 kind: None,
                 flow: Some(flow(wet.along(from / cells_per_bladder).unwrap_or(along).over(ds))),
             }));
@@ -180,8 +182,8 @@ impl FluidMesh {
                 junction,
                 component: network.component_of_junction[one.junction],
                 law: match wet.compression {
-                    None => one.law,
-                    Some(_) => one.law.holding(network.halves_of_tubes(one.junction)),
+                    None => one.law.clone(),
+                    Some(_) => one.law.clone().holding(network.halves_of_tubes(one.junction)),
                 },
             })
         });
@@ -205,6 +207,19 @@ impl FluidMesh {
         }
         // order of the accumulators' unknowns
         accumulators.sort_by_key(|one| one.junction);
+        for link in &mut links {
+            let valve = link.number.and_then(|number| network.links[number].pilot);
+            link.pilot = valve.and_then(|valve| {
+                let vessel = accumulators.iter().position(|one| one.number == Some(valve.vessel))?;
+                let MeshAccumulator { junction, law, .. } = &accumulators[vessel];
+                Some(MeshPilot {
+                    vessel,
+                    junction: *junction,
+                    law: wet.compression.as_ref().map(|_| law.clone()),
+                    valve,
+                })
+            });
+        }
         let mut mesh = Self {
             bladders,
             cells_per_bladder,

@@ -1,6 +1,9 @@
 //! Links, sources and vessels of a network on the mesh.
 
-use crate::model::network::{AccumulatorLaw, CheckValveLaw, FlowLaw, LinkKind, PumpCharacteristic};
+use super::time_data::TIGHT;
+use super::{TimeData, Workspace};
+use crate::model::network::{AccumulatorLaw, CheckValveLaw, FlowLaw, LinkKind, PumpCharacteristic, ValvePilot};
+use crate::numerics::Scalar;
 
 /// End of a link on the mesh.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -38,6 +41,8 @@ pub struct MeshLink {
     pub check_valve: Option<CheckValveLaw>,
     /// Kind of the link; none for a face between cells.
     pub kind: Option<LinkKind>,
+    /// Vessel that opens the valve of the link.
+    pub pilot: Option<MeshPilot>,
     /// Law of a flow that is not given by pressures alone.
     pub flow: Option<MeshFlow>,
 }
@@ -58,10 +63,52 @@ impl MeshLink {
         self.flow.is_none() && self.check_valve.is_none() && self.pump.is_none() && self.head == 0.0
     }
 
+    /// Opening of the valve by signal and pilot.
+    #[inline]
+    pub fn opening<T: Scalar>(&self, now: &TimeData, w: &Workspace<T>, k: usize) -> T {
+        let by_signal = T::constant(now.opening[k]);
+        let Some(pilot) = &self.pilot else { return by_signal };
+        let volume = w.fluid.accumulated[pilot.vessel];
+        let volume = match &pilot.law {
+            None => volume,
+            Some(law) => w.fluid.junction[pilot.junction].lift(|p| (law.volume(p), law.compliance(p))),
+        };
+        let opening = by_signal * pilot.valve.opening(volume);
+        match self.flow {
+            None => opening,
+            Some(_) => opening * (1.0 - TIGHT) + TIGHT,
+        }
+    }
+
+    /// Conductance [m^3/(s Pa)], [E6], at the opening of the valve; k is the index of the link.
+    #[inline]
+    pub fn conductance<T: Scalar>(&self, now: &TimeData, w: &Workspace<T>, k: usize) -> T {
+        match &self.pilot {
+            None => T::constant(now.conductance[k]),
+            Some(_) => {
+                let opening = self.opening(now, w, k);
+                opening / (opening * (self.half_cells + self.of_pump) + self.resistance)
+            }
+        }
+    }
+
     /// Total resistance with open valves [Pa s/m^3].
     pub fn in_series(&self) -> f64 {
         self.half_cells + self.of_pump + self.resistance
     }
+}
+
+/// Vessel on the mesh that opens the valve of a link.
+#[derive(Clone, Debug)]
+pub struct MeshPilot {
+    /// Index of the vessel among the accumulators of the mesh.
+    pub vessel: usize,
+    /// Its index among the junctions of the mesh.
+    pub junction: usize,
+    /// Its law if the fluid is compressible: its volume then follows from its pressure.
+    pub law: Option<AccumulatorLaw>,
+    /// Law of the valve.
+    pub valve: ValvePilot,
 }
 
 /// A flow that is an unknown.
@@ -87,7 +134,7 @@ pub struct MeshSource {
 }
 
 /// An accumulator on the mesh, or the storage of compressible fluid at a junction of tubes with inertia.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub struct MeshAccumulator {
     /// Number among the network's accumulators; none for a junction of tubes.
     pub number: Option<usize>,

@@ -36,7 +36,7 @@ impl SortedLinks {
         };
         for (k, link) in links.iter().enumerate() {
             match (link.from, link.to) {
-                (LinkEnd::Cell(from), LinkEnd::Cell(to)) if link.is_plain() => {
+                (LinkEnd::Cell(from), LinkEnd::Cell(to)) if link.is_plain() && link.pilot.is_none() => {
                     sorted.between_cells.push([k, from, to].map(|number| number as u32));
                 }
                 _ => sorted.others.push(k),

@@ -10,7 +10,7 @@ use crate::model::network::Feed;
 use crate::numerics::Planar;
 
 /// Opening of a closed valve on a tube whose flow is an unknown.
-const TIGHT: f64 = 1e-9;
+pub(super) const TIGHT: f64 = 1e-9;
 
 /// Given values at one end of the beam.
 #[derive(Clone, Copy, Debug, Default)]

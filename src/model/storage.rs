@@ -81,7 +81,7 @@ impl LumpedNetwork {
             if link.head != 0.0 {
                 return Err("points of different heights need pressure differences".into());
             }
-            if link.opening.as_ref().is_some_and(|o| !o.is_constant()) {
+            if link.pilot.is_some() || link.opening.as_ref().is_some_and(|o| !o.is_constant()) {
                 return Err("a valve moves".into());
             }
             ports.extend([link.from, link.to].into_iter().filter_map(|node| match node {

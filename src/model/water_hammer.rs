@@ -121,6 +121,7 @@ impl<'a> Line<'a> {
         let stiff = |end: &TubeEnd| {
             let walls = end
                 .vessel
+                .as_ref()
                 .map_or(0.0, |law| law.compliance(0.0) + law.volume_at_rest() * softness);
             walls < end.in_tubes * softness
         };

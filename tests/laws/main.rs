@@ -30,6 +30,7 @@ mod secant;
 mod segments;
 mod sloshing;
 mod smooth_parts;
+mod snapping;
 mod span_damping;
 mod spans;
 mod surroundings;

@@ -14,4 +14,5 @@ mod response;
 mod response_derivatives;
 mod selection;
 mod sizes;
+mod small_cycles;
 mod spectral;

@@ -5,6 +5,7 @@ mod branch;
 mod command;
 mod floquet;
 mod harmonic;
+mod relaxation_oscillator;
 mod self_oscillation;
 mod shooting;
 mod subharmonic;

@@ -165,6 +165,7 @@ fn balances_of_networks_close() {
         ("metamaterial", 0.2),
         ("modulated-metamaterial", 0.2),
         ("raised-tank", 1.0),
+        ("relaxation-oscillator", 0.2),
     ] {
         closes(name, end);
     }

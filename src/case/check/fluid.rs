@@ -1,6 +1,7 @@
 //! Checks of the fluid: keys of gases and of liquids, and gas pressures above absolute vacuum.
 
 use super::strength::inlets;
+use super::vessels;
 use crate::case::faults::Violations;
 use crate::case::numbers::plain;
 use crate::case::schema::{AccumulatorKind, Case, Fluid, FluidKind};
@@ -10,7 +11,7 @@ pub(super) fn check(case: &Case, faults: &mut Violations) {
     let Some(fluid) = &case.fluid else { return };
     let gas = fluid.kind == FluidKind::Gas;
     let some_gas = fluid.gas() > 0.0;
-    vessels(case, fluid, faults);
+    vessels::check(case, fluid, faults);
     let mut accumulators = case.network.iter().flat_map(|network| &network.accumulators);
     let cushioned = accumulators.any(|one| matches!(one.kind, AccumulatorKind::Gas { .. }));
     let of_liquid = [
@@ -51,53 +52,8 @@ pub(super) fn check(case: &Case, faults: &mut Violations) {
     }
 }
 
-/// Checks accumulators: a tank needs a compressible fluid, an elastic vessel of gas needs a volume, and gas pressures stay above vacuum.
-fn vessels(case: &Case, fluid: &Fluid, faults: &mut Violations) {
-    let all = case.network.iter().flat_map(|network| &network.accumulators);
-    for (i, one) in all.enumerate() {
-        let pointer = format!("/network/accumulators/{i}");
-        let start = format!("{pointer}/start_pressure_pa");
-        match one.kind {
-            AccumulatorKind::Tank { .. } if !fluid.is_compressible() => {
-                let what = "a tank of incompressible fluid, which stores nothing";
-                let fault = Violation::new(Code::Together, format!("{pointer}/kind/tank"), what);
-                let hint = "give \"elastic\" or \"gas\" in its place, or bulk_modulus_pa or gas_fraction in /fluid, or kind \"gas\" there";
-                faults.push_at_key(fault.hint(hint));
-            }
-            AccumulatorKind::Elastic { volume_m3: 0.0, .. } if fluid.kind == FluidKind::Gas => {
-                let what = "an elastic vessel of gas without a volume at ambient pressure";
-                let fault = Violation::new(Code::Together, format!("{pointer}/kind/elastic"), what);
-                faults
-                    .push_at_key(fault.hint("give its volume_m3: pressure compresses the gas and stretches the walls"));
-            }
-            AccumulatorKind::Elastic {
-                compliance_m3_pa,
-                volume_m3,
-            } if fluid.kind == FluidKind::Gas && volume_m3 + compliance_m3_pa * one.start_pressure_pa <= 0.0 => {
-                let what = format!("{} Pa, at which the vessel has no volume", plain(one.start_pressure_pa));
-                let least = format!(
-                    "above -{} Pa, -volume_m3/compliance_m3_pa",
-                    plain(volume_m3 / compliance_m3_pa)
-                );
-                let parts = ["volume_m3", "compliance_m3_pa"].map(|key| format!("{pointer}/kind/elastic/{key}"));
-                let fault = Violation::new(Code::Range, start, what).allowed(least);
-                faults.push_beside(&parts.each_ref().map(String::as_str), fault);
-            }
-            AccumulatorKind::Gas { .. } if fluid.kind == FluidKind::Gas && one.start_pressure_pa < 0.0 => {
-                let what = format!(
-                    "{} Pa, at which the vessel contains a negative amount of gas",
-                    plain(one.start_pressure_pa)
-                );
-                faults.push(Violation::new(Code::Range, start, what).allowed("0 Pa or more"));
-            }
-            AccumulatorKind::Tank { .. } | AccumulatorKind::Elastic { .. } if fluid.gas() <= 0.0 => {}
-            _ => above_vacuum(fluid, start, one.start_pressure_pa, faults),
-        }
-    }
-}
-
 /// Checks that the lowest gauge pressure of a gas is above absolute vacuum.
-fn above_vacuum(fluid: &Fluid, pointer: String, lowest: f64, faults: &mut Violations) {
+pub(super) fn above_vacuum(fluid: &Fluid, pointer: String, lowest: f64, faults: &mut Violations) {
     let ambient = fluid.ambient_pressure();
     if lowest <= -ambient {
         let what = format!("{} Pa, at or below absolute vacuum", plain(lowest));

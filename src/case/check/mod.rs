@@ -22,6 +22,7 @@ mod start;
 mod strength;
 mod time;
 mod tubes;
+mod vessels;
 
 use super::faults::Violations;
 use super::schema::Case;

@@ -4,7 +4,7 @@ use std::collections::{BTreeMap, BTreeSet, HashMap};
 
 use super::bladders::{PER_ROW, existing, two_permeabilities};
 use super::tubes::{loss_coefficient, radius, roughness, size};
-use super::{junctions, tubes};
+use super::{junctions, tubes, vessels};
 use crate::case::faults::Violations;
 use crate::case::numbers::plain;
 use crate::case::schema::{self, BladderEnd, Case, ChainEnd, CheckValve, Endpoint, Network, Rectifier, TubeDefaults};
@@ -13,6 +13,8 @@ use crate::case::wiring::{
 };
 use crate::error::{Code, Violation};
 use crate::functions::signals::Signal;
+
+static SHUT: Signal = Signal::Constant(0.0);
 
 pub(super) fn check(case: &Case, faults: &mut Violations) {
     // without a valid number of bladders, indices cannot be checked
@@ -170,7 +172,10 @@ impl<'a> Rules<'a, '_> {
         let mut found = vec![];
         for (i, tube) in self.network.tubes.iter().enumerate() {
             let pointer = format!("/network/tubes/{i}");
-            let points = self.branch([&tube.from, &tube.to], Some(&tube.opening), &pointer, "tube");
+            // a junction behind a valve that a vessel may close has no pressure then
+            let opening = tube.pilot.as_ref().map_or(&tube.opening, |_| &SHUT);
+            let points = self.branch([&tube.from, &tube.to], Some(opening), &pointer, "tube");
+            let pilot = tubes::pilot(self.case, tube, &pointer, self.faults);
             if let Some(valve) = &tube.check_valve {
                 self.valve(valve, &format!("{pointer}/check_valve"));
             }
@@ -196,6 +201,7 @@ impl<'a> Rules<'a, '_> {
                 loss_coefficient: loss_coefficient(tube.loss_coefficient, self.usual),
                 roughness_m: roughness(tube.roughness_m, self.usual),
                 opening: &tube.opening,
+                pilot,
                 check_valve: tube.check_valve.as_ref(),
                 pump: tube.pump.as_ref(),
             }));
@@ -270,6 +276,7 @@ impl<'a> Rules<'a, '_> {
                 );
                 self.fault(format!("{pointer}/at"), what);
             }
+            vessels::curve(accumulator, &pointer, self.faults);
             self.joined.stores.insert(at);
             found.push((at, accumulator));
         }
@@ -334,6 +341,7 @@ impl<'a> Rules<'a, '_> {
                     loss_coefficient: loss_coefficient(None, self.usual),
                     roughness_m: roughness(None, self.usual),
                     opening: &chain.opening,
+                    pilot: None,
                     check_valve: None,
                     pump: None,
                 })),

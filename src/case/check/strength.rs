@@ -294,13 +294,18 @@ fn flows(case: &Case, bladders: &Bladders, faults: &mut Violations) {
     });
     let compressed = |volume: f64| volume * softness * pressure;
     let vessels = case.network.iter().flat_map(|network| &network.accumulators);
-    let vessels = vessels.map(|one| match one.kind {
-        AccumulatorKind::Elastic {
+    let vessels = vessels.map(|one| match &one.kind {
+        &AccumulatorKind::Elastic {
             compliance_m3_pa,
             volume_m3,
         } => pressure * compliance_m3_pa + compressed(volume_m3),
-        AccumulatorKind::Tank { volume_m3 } => compressed(volume_m3),
-        AccumulatorKind::Gas { volume_m3, .. } => volume_m3,
+        AccumulatorKind::Tank { volume_m3 } => compressed(*volume_m3),
+        AccumulatorKind::Gas { volume_m3, .. } => *volume_m3,
+        AccumulatorKind::Curve { volume_m3, pressure_pa } => match (&volume_m3[..], &pressure_pa[..]) {
+            // straight beyond the last point
+            ([.., v0, v1], [.., p0, p1]) if p1 > p0 => v1 + (pressure - p1).max(0.0) * (v1 - v0) / (p1 - p0),
+            _ => f64::INFINITY,
+        },
     });
     let room = in_bladders + vessels.sum::<f64>();
     let beyond = format!(

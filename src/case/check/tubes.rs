@@ -1,10 +1,11 @@
-//! Properties of a tube: its own values, or the defaults of `/tubes`. Checks of its pump.
+//! Properties of a tube: its own values, or the defaults of `/tubes`. Checks of its pump and of the pilot of its valve.
 
 use crate::case::faults::Violations;
 use crate::case::numbers::plain;
-use crate::case::schema::{self, Case, CrossSection, TubeDefaults};
+use crate::case::schema::{self, AccumulatorKind, Case, CrossSection, Pilot, TubeDefaults};
 use crate::case::wiring::PermeabilitySource;
-use crate::error::{Code, Violation};
+use crate::case::wording::nearest;
+use crate::error::{Code, Violation, listed};
 
 /// Default loss of a tube, in dynamic pressures of its mean velocity: sharp entrance 0.5, exit 1.
 const SHARP_EDGED: f64 = 1.5;
@@ -54,30 +55,79 @@ pub(super) fn pump(case: &Case, pump: &schema::Pump, pointer: &str, faults: &mut
         faults.push(fault.hint("remove the resistance"));
     }
     let (flows, pressures) = (&curve.flow_m3_s, &curve.pressure_pa);
-    if flows.len() != pressures.len() {
-        let what = format!("{} flows for {} pressures", flows.len(), pressures.len());
-        let fault = Violation::new(Code::Count, format!("{pointer}/curve/flow_m3_s"), what);
-        faults.push(fault.allowed(pressures.len().to_string()));
-    }
-    if let Some(k) = flows.windows(2).position(|pair| pair[0] >= pair[1]) {
-        let what = format!("flow {} after flow {}", plain(flows[k + 1]), plain(flows[k]));
-        let fault = Violation::new(Code::Wiring, format!("{pointer}/curve/flow_m3_s/{}", k + 1), what);
-        faults.push(fault.allowed("ascending flows"));
-    }
-    let steep = flows.windows(2).zip(pressures.windows(2));
-    let steep = steep.map(|(q, p)| (p[1] - p[0]) / (q[1] - q[0]) / (q[1] - q[0]));
-    if steep.into_iter().any(|bend| !(6.0 * bend).is_finite()) && faults.is_empty() {
-        let fault = Violation::new(
-            Code::Wiring,
-            format!("{pointer}/curve/flow_m3_s"),
-            "flows too close to each other",
-        );
-        faults.push(fault.hint("flows are in m^3/s; a ml/s is 1e-6"));
-    }
+    points(
+        &format!("{pointer}/curve/flow_m3_s"),
+        ["flow", "flows are in m^3/s; a ml/s is 1e-6"],
+        [flows, pressures],
+        faults,
+    );
     let massless = case.fluid.as_ref().is_some_and(|fluid| fluid.density_kg_m3 == 0.0);
     if massless && pressures.windows(2).any(|pair| pair[0] < pair[1]) {
         let what = "a curve that rises with flow, for a fluid without mass";
         let fault = Violation::new(Code::Together, format!("{pointer}/curve"), what);
         faults.push(fault.hint("give /fluid/density_kg_m3: only inertia determines the flow where the pressure rises"));
     }
+}
+
+/// Checks the points of a curve of pressure over another quantity, whose values are at `pointer`: as many as pressures, ascending, and
+/// apart. `names` are the name of the quantity and a hint about its unit. True if they are.
+pub(super) fn points(pointer: &str, names: [&str; 2], values: [&[f64]; 2], faults: &mut Violations) -> bool {
+    let ([name, hint], [at, pressures], before) = (names, values, faults.count());
+    if at.len() != pressures.len() {
+        let what = format!("{} {name}s for {} pressures", at.len(), pressures.len());
+        let fault = Violation::new(Code::Count, pointer, what);
+        faults.push(fault.allowed(pressures.len().to_string()));
+    }
+    if let Some(k) = at.windows(2).position(|pair| pair[0] >= pair[1]) {
+        let what = format!("{name} {} after {name} {}", plain(at[k + 1]), plain(at[k]));
+        let fault = Violation::new(Code::Wiring, format!("{pointer}/{}", k + 1), what);
+        faults.push(fault.allowed(format!("ascending {name}s")));
+    }
+    let steep = at.windows(2).zip(pressures.windows(2));
+    let steep = steep.map(|(x, p)| (p[1] - p[0]) / (x[1] - x[0]) / (x[1] - x[0]));
+    if steep.into_iter().any(|bend| !(6.0 * bend).is_finite()) && faults.count() == before {
+        let fault = Violation::new(Code::Wiring, pointer, format!("{name}s too close to each other"));
+        faults.push(fault.hint(hint));
+    }
+    faults.count() == before
+}
+
+/// Resolves the pilot of a tube's valve: its accumulator by its index, and its volumes. Reports faults.
+pub(super) fn pilot<'a>(
+    case: &'a Case,
+    tube: &'a schema::Tube,
+    pointer: &str,
+    faults: &mut Violations,
+) -> Option<(usize, &'a Pilot)> {
+    let pilot = tube.pilot.as_ref()?;
+    let pointer = format!("{pointer}/pilot");
+    if tube.check_valve.is_some() {
+        let what = "a pilot of a tube with a check valve";
+        let fault = Violation::new(Code::Together, pointer.clone(), what);
+        faults.push(fault.hint("give the check valve to another tube in series, joined by a junction"));
+    }
+    if pilot.closed_at_m3 == pilot.open_at_m3 {
+        let what = format!("{} m^3, at which the valve is also closed", plain(pilot.open_at_m3));
+        let fault = Violation::new(Code::Wiring, format!("{pointer}/open_at_m3"), what);
+        faults.push(fault.allowed("another volume than closed_at_m3"));
+    }
+    let vessels = case.network.as_ref().map_or(&[][..], |network| &network.accumulators);
+    let names: Vec<String> = vessels.iter().map(schema::Accumulator::label).collect();
+    let at = format!("{pointer}/vessel");
+    let Some(vessel) = names.iter().position(|name| *name == pilot.vessel) else {
+        let what = format!("\"{}\" is not the name of an accumulator", pilot.vessel);
+        let known = || names.iter().map(String::as_str);
+        faults.push(Violation {
+            nearest: nearest(&pilot.vessel, known()),
+            allowed: (!names.is_empty()).then(|| listed(known())),
+            ..Violation::new(Code::Wiring, at, what).hint("name an accumulator under /network/accumulators")
+        });
+        return None;
+    };
+    if matches!(vessels[vessel].kind, AccumulatorKind::Tank { .. }) {
+        let what = format!("the rigid tank \"{}\", whose volume is constant", pilot.vessel);
+        let fault = Violation::new(Code::Wiring, at, what);
+        faults.push(fault.allowed("an accumulator of kind elastic, gas or curve"));
+    }
+    Some((vessel, pilot))
 }

@@ -169,12 +169,27 @@ pub struct Tube {
     /// Opening `o(t)` of its valve, 0 (closed) to 1 (open).
     #[serde(default = "Signal::one", skip_serializing_if = "Signal::is_one")]
     pub opening: Signal,
+    /// Vessel whose volume opens the valve, beside `opening`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub pilot: Option<Pilot>,
     /// Check valve or relief valve in it, which lets fluid through from `from` to `to`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub check_valve: Option<CheckValve>,
     /// Pump in it, which presses from `from` to `to`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub pump: Option<Pump>,
+}
+
+/// A vessel whose volume opens the valve of a tube, smoothly between two volumes: 0 at one, 1 at the other.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Pilot {
+    /// Name of an accumulator, or of its point.
+    pub vessel: String,
+    /// Its volume at and before which the valve is closed [m^3].
+    pub closed_at_m3: f64,
+    /// Its volume at and beyond which the valve is open [m^3]; below `closed_at_m3` for a valve that it closes.
+    pub open_at_m3: f64,
 }
 
 /// A point with prescribed pressure, flow or volume; exactly one of the three.
@@ -313,7 +328,7 @@ pub struct Accumulator {
     pub at: Endpoint,
     /// Source of the pressure on its fluid: elastic walls, or gas above it.
     pub kind: AccumulatorKind,
-    /// Gauge pressure in it at the start [Pa].
+    /// Gauge pressure in it at the start [Pa]; of several volumes with this pressure in a curve, the smallest.
     #[serde(default, skip_serializing_if = "is_zero")]
     pub start_pressure_pa: f64,
 }
@@ -348,4 +363,25 @@ pub enum AccumulatorKind {
         #[schemars(range(min = 1.0, max = 2.0))]
         polytropic_exponent: f64,
     },
+    /// Walls with a measured pressure over volume, which may fall in between: a balloon, or a dome that snaps. Monotone cubics through
+    /// the points, straight beyond them. Beyond both ends the pressure rises with volume.
+    Curve {
+        /// Volumes beyond that at ambient pressure, ascending [m^3].
+        #[schemars(length(min = 2, max = 10000))]
+        volume_m3: Vec<f64>,
+        /// Gauge pressure at each volume [Pa].
+        #[schemars(length(min = 2, max = 10000))]
+        pressure_pa: Vec<f64>,
+    },
+}
+
+impl Accumulator {
+    /// Name in outputs: its own, or that of its point.
+    pub fn label(&self) -> String {
+        let of_point = || match (self.at.bladder, self.at.end, &self.at.junction) {
+            (Some(bladder), Some(end), _) => format!("{end} of bladder {bladder}"),
+            (_, _, junction) => junction.clone().unwrap_or_default(),
+        };
+        self.name.clone().unwrap_or_else(of_point)
+    }
 }

@@ -233,7 +233,8 @@ pub fn flows(system: &System, now: &TimeData, w: &mut Workspace<f64>, out: &mut 
     };
     add_all(out, along_links(fluid, now, w));
     for &k in &fluid.sorted.at_ports {
-        let (link, q, conductance) = (&fluid.links[k], w.fluid.flow[k], now.conductance[k]);
+        let (link, q) = (&fluid.links[k], w.fluid.flow[k]);
+        let conductance = link.conductance(now, w, k);
         let surplus = beyond_stored(w, conductance, [component(link.from), component(link.to)]);
         let ends = [link.from, link.to].map(|place| wet.potential(pressure_at(place, now, w)).abs());
         let size = ends[0].max(ends[1]);
@@ -268,7 +269,7 @@ pub fn flows(system: &System, now: &TimeData, w: &mut Workspace<f64>, out: &mut 
 /// Dissipation and harvested power of flow along links, and the power of pumps.
 fn along_links(fluid: &FluidMesh, now: &TimeData, w: &Workspace<f64>) -> Rates {
     let mut rates = Rates::default();
-    for (k, (link, &conductance)) in fluid.links.iter().zip(&now.conductance).enumerate() {
+    for (k, link) in fluid.links.iter().enumerate() {
         let volume = w.fluid.at_mean_density(k, w.fluid.flow[k]);
         let in_halves = volume * volume * link.half_cells;
         if let Some(pump) = link.pump {
@@ -281,9 +282,15 @@ fn along_links(fluid: &FluidMesh, now: &TimeData, w: &Workspace<f64>) -> Rates {
         let [in_valve, in_bladders, rest] = match &link.flow {
             None => {
                 let between = volume * driving(link, now, w, k) - in_halves;
-                tubes::creeping(link, [conductance, volume, between])
+                tubes::creeping(link, [now.conductance[k], volume, between])
             }
-            Some(flow) => tubes::dissipation(link, flow, [now.resistance[k], volume, driven(link, now, w, k)], k, w),
+            Some(flow) => {
+                let resistance = match link.pilot {
+                    None => now.resistance[k],
+                    Some(_) => link.resistance / link.opening(now, w, k),
+                };
+                tubes::dissipation(link, flow, [resistance, volume, driven(link, now, w, k)], k, w)
+            }
         };
         add(&mut rates, EnergyRate::Bladders, in_halves + in_bladders);
         add(&mut rates, EnergyRate::Rectifiers, in_valve);
@@ -384,7 +391,7 @@ fn surplus(system: &System, now: &TimeData, w: &mut Workspace<f64>) {
     for &k in &fluid.sorted.at_ports {
         let ends = [fluid.links[k].from, fluid.links[k].to];
         for inside in ends.into_iter().filter_map(|end| component(network, fluid, end)) {
-            w.fluid.port_conductance[inside] += now.conductance[k];
+            w.fluid.port_conductance[inside] += fluid.links[k].conductance(now, w, k);
         }
     }
 }

@@ -42,7 +42,11 @@ pub fn flows(system: &System, now: &TimeData, w: &Workspace<f64>, out: &mut [f64
     for &k in &fluid.sorted.at_ports {
         let (link, q) = (&fluid.links[k], w.fluid.flow[k]);
         let components = [link.from, link.to].map(|place| component(&wet.network, fluid, place));
-        across(link.from, link.to, q - beyond_stored(w, now.conductance[k], components));
+        across(
+            link.from,
+            link.to,
+            q - beyond_stored(w, link.conductance(now, w, k), components),
+        );
     }
     for (k, &MeshBridge { from, to, .. }) in fluid.bridges.iter().enumerate() {
         across(from, to, through_bridge(wet, fluid, k, now, w));

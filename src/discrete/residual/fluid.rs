@@ -199,19 +199,19 @@ pub fn flows<T: Scalar>(system: &System, now: &TimeData, w: &mut Workspace<T>) {
         own.inflow[to] += q;
     }
     for &k in &fluid.sorted.others {
-        let (link, conductance) = (&fluid.links[k], now.conductance[k]);
+        let link = &fluid.links[k];
         let q = match (link.flow, &wet.compression) {
             (None, Some(compression)) if link.is_plain() => {
                 let ends = [link.from, link.to].map(|place| potential_at(compression, place, now, w));
-                (ends[0] - ends[1]) * conductance
+                (ends[0] - ends[1]) * link.conductance(now, w, k)
             }
             (None, _) => {
                 look_along(wet, link, now, w, k);
                 let driving = driving(link, now, w, k);
                 let volume = match &link.check_valve {
-                    None => driving * conductance,
-                    Some(_) if conductance == 0.0 => T::zero(),
-                    Some(valve) => now.tangents.behind(k, valve, 1.0 / conductance, driving),
+                    None => driving * link.conductance(now, w, k),
+                    Some(_) if now.conductance[k] == 0.0 => T::zero(),
+                    Some(valve) => now.tangents.behind(k, valve, 1.0 / now.conductance[k], driving),
                 };
                 w.fluid.at_ambient_density(k, volume)
             }

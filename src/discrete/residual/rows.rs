@@ -173,7 +173,10 @@ pub fn tubes<T: Scalar>(system: &System, now: &TimeData, w: &Workspace<T>, r: &m
         let driven = driven(link, now, w, k);
         let volume = w.fluid.root_of_density(k).map_or(moving, |root| moving / root);
         r[own.flow.start + number] = match &link.check_valve {
-            None => (volume * (link.half_cells + link.of_pump) - driven) * now.opening[k] + volume * link.resistance,
+            None => {
+                let opened = (volume * (link.half_cells + link.of_pump) - driven) * link.opening(now, w, k);
+                opened + volume * link.resistance
+            }
             Some(valve) => {
                 let along = law.resistance_along_a_step(now.cj);
                 let resistance = 1.0 / now.conductance[k] + along;

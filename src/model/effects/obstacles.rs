@@ -325,8 +325,8 @@ pub fn tube_inertia(case: &Case, network: &ResolvedNetwork) -> Option<Obstacle> 
 
 /// Obstacle: a rigid tank, which stores only compressed fluid.
 pub fn compressibility(network: &ResolvedNetwork) -> Option<Obstacle> {
-    let rigid = |law| matches!(law, AccumulatorLaw::Rigid { .. });
-    let tank = network.accumulators.iter().find(|one| rigid(one.law))?;
+    let rigid = |law: &AccumulatorLaw| matches!(law, AccumulatorLaw::Rigid { .. });
+    let tank = network.accumulators.iter().find(|one| rigid(&one.law))?;
     let what = format!("the tank \"{}\" stores nothing without compression", tank.name);
     obstacle(what, "remove the tank, or leave compressibility on")
 }

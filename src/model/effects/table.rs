@@ -51,7 +51,7 @@ pub fn given(effect: Effect, case: &Case, network: Option<&ResolvedNetwork>) -> 
             case.beam.damping.quadratic_drag_n_s2_m3 > 0.0 || around.is_some_and(|s| s.drag_coefficient > 0.0)
         }
         Closing => network.is_some() && case.bladders.as_ref().is_some_and(|b| b.closing.is_some()),
-        Valves => network.is_some_and(|n| n.links.iter().any(|l| l.opening.is_some())),
+        Valves => network.is_some_and(|n| n.links.iter().any(|l| l.opening.is_some() || l.pilot.is_some())),
         CheckValves => network.is_some_and(|n| n.links.iter().any(|l| l.check_valve.is_some())),
         Pumps => network.is_some_and(|n| n.links.iter().any(|l| l.pump.is_some())),
         Accumulators => network.is_some_and(|n| !n.accumulators.is_empty()),

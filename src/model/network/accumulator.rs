@@ -1,6 +1,8 @@
 //! Accumulators: vessels that store fluid under pressure.
 
-use super::ResolvedNetwork;
+use std::sync::Arc;
+
+use super::{PressureVolumeCurve, ResolvedNetwork};
 use crate::case::schema::{Accumulator as Written, AccumulatorKind};
 use crate::numerics::Scalar;
 
@@ -12,6 +14,7 @@ use crate::numerics::Scalar;
 /// elastic   p = V/C                                    E = V²/(2C)
 /// gas       p = p_0 ((1 - V/V_0)^-n - 1)               E = p_0 V_0 (((1 - V/V_0)^(1-n) - 1)/(n - 1) - V/V_0)
 /// rigid     V = 0                                      E = 0
+/// curve     p = P(V)                                   E = ∫ P dV, [E102]
 /// ```
 ///
 /// `V_0` is the gas volume at ambient pressure `p_0`; the gas obeys `p_abs V^n` = const. For `n = 1`,
@@ -30,7 +33,7 @@ pub struct AccumulatorElement {
 }
 
 /// Pressure of an accumulator as a function of its volume.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub enum AccumulatorLaw {
     /// Elastic walls.
     Elastic {
@@ -55,21 +58,23 @@ pub enum AccumulatorLaw {
         /// Fluid volume of tubes that end in it, at ambient pressure [m^3], used for compressible fluid.
         holds: f64,
     },
+    /// Points of pressure over volume; the fluid is incompressible.
+    Curve(Arc<PressureVolumeCurve>),
 }
 
 impl AccumulatorLaw {
     /// Law of a case's accumulator; `ambient` is the absolute ambient pressure [Pa].
     pub(super) fn new(written: &Written, ambient: f64) -> Self {
-        match written.kind {
-            AccumulatorKind::Elastic {
+        match &written.kind {
+            &AccumulatorKind::Elastic {
                 compliance_m3_pa,
                 volume_m3,
             } => Self::Elastic {
                 compliance: compliance_m3_pa,
                 holds: volume_m3,
             },
-            AccumulatorKind::Tank { volume_m3 } => Self::Rigid { holds: volume_m3 },
-            AccumulatorKind::Gas {
+            AccumulatorKind::Tank { volume_m3 } => Self::Rigid { holds: *volume_m3 },
+            &AccumulatorKind::Gas {
                 volume_m3,
                 polytropic_exponent,
             } => Self::Gas {
@@ -78,6 +83,13 @@ impl AccumulatorLaw {
                 exponent: polytropic_exponent,
                 holds: 0.0,
             },
+            // the check of the case rejects points of no curve
+            AccumulatorKind::Curve { volume_m3, pressure_pa } => {
+                match PressureVolumeCurve::through(volume_m3, pressure_pa) {
+                    Some(curve) => Self::Curve(Arc::new(curve)),
+                    None => Self::Rigid { holds: 0.0 },
+                }
+            }
         }
     }
 
@@ -85,13 +97,15 @@ impl AccumulatorLaw {
     pub fn volume_at_rest(&self) -> f64 {
         match *self {
             Self::Elastic { holds, .. } | Self::Rigid { holds } | Self::Gas { holds, .. } => holds,
+            Self::Curve(_) => 0.0,
         }
     }
 
     /// Adds fluid volume at ambient pressure [m^3].
     pub fn holding(mut self, more: f64) -> Self {
-        let (Self::Elastic { holds, .. } | Self::Rigid { holds } | Self::Gas { holds, .. }) = &mut self;
-        *holds += more;
+        if let Self::Elastic { holds, .. } | Self::Rigid { holds } | Self::Gas { holds, .. } = &mut self {
+            *holds += more;
+        }
         self
     }
 
@@ -115,10 +129,11 @@ impl AccumulatorLaw {
                 let pressure = ambient * (-exponent * logarithm).exp_m1();
                 (pressure, exponent * (pressure + ambient) / (of_gas * left))
             }),
+            Self::Curve(ref curve) => curve.pressure(volume),
         }
     }
 
-    /// Volume [m^3] at a gauge pressure [Pa].
+    /// Volume [m^3] at a gauge pressure [Pa]; of a curve the smallest.
     pub fn volume(&self, pressure: f64) -> f64 {
         match *self {
             Self::Elastic { compliance, .. } => compliance * pressure,
@@ -129,10 +144,11 @@ impl AccumulatorLaw {
                 exponent,
                 ..
             } => -volume * (-(pressure / ambient).ln_1p() / exponent).exp_m1(),
+            Self::Curve(ref curve) => curve.volume(pressure),
         }
     }
 
-    /// Compliance dV/dp [m^3/Pa] at a gauge pressure [Pa].
+    /// Compliance dV/dp [m^3/Pa] at a gauge pressure [Pa]; of a curve its mean.
     pub fn compliance(&self, pressure: f64) -> f64 {
         match *self {
             Self::Elastic { compliance, .. } => compliance,
@@ -143,6 +159,7 @@ impl AccumulatorLaw {
                 exponent,
                 ..
             } => (volume - self.volume(pressure)) / (exponent * (ambient + pressure)),
+            Self::Curve(ref curve) => curve.mean_compliance(),
         }
     }
 
@@ -165,6 +182,7 @@ impl AccumulatorLaw {
                 };
                 ambient * of_gas * (worked - share)
             }
+            Self::Curve(ref curve) => curve.energy(volume),
         }
     }
 }

@@ -21,7 +21,10 @@ impl ResolvedNetwork {
     /// Returns all tube ends.
     pub fn tube_ends(&self) -> Vec<TubeEnd> {
         let groups = self.adrift().into_iter().map(|group| (group, None));
-        let vessels = self.accumulators.iter().map(|one| (vec![one.junction], Some(one.law)));
+        let vessels = self
+            .accumulators
+            .iter()
+            .map(|one| (vec![one.junction], Some(one.law.clone())));
         let end = |(junctions, vessel): (Vec<usize>, _)| {
             let links = || junctions.iter().flat_map(|&junction| self.tubes_at(junction));
             TubeEnd {

@@ -5,7 +5,8 @@ use std::collections::BTreeMap;
 
 use super::{
     AccumulatorElement, AccumulatorLaw, AlongBladder, Bridge, CheckValveLaw, Feed, LinearTurbine, Link, LinkKind,
-    NetworkNode, PrescribedFlow, PressurePort, PumpLaw, ResolvedNetwork, TubeFlow, bladder_permeability, components,
+    NetworkNode, PrescribedFlow, PressurePort, PumpLaw, ResolvedNetwork, TubeFlow, ValvePilot, bladder_permeability,
+    components,
 };
 use crate::case::schema::{Bladders, Fluid, Rectifier, TurbineConductance};
 use crate::case::wiring::{PermeabilitySource, PortQuantity, Wiring, WiringPoint, WiringTube};
@@ -69,6 +70,8 @@ pub(super) fn graph(
     }
     let things = things(wiring, &mut network.ports);
     let nodes = nodes(wiring, &things, &mut network);
+    // accumulators of the case in the order of their points
+    let mut in_order = vec![];
     // R = μ l_c/q1c
     let resistance = |tube: &WiringTube| viscosity * tube.length_m / (self::permeability(tube.bore) * factor);
     // weight per volume of the fluid
@@ -83,6 +86,11 @@ pub(super) fn graph(
                 to: nodes[&to],
                 resistance: resistance(tube),
                 opening: (!tube.opening.is_one()).then(|| tube.opening.clone()),
+                pilot: tube.pilot.map(|(vessel, pilot)| ValvePilot {
+                    vessel,
+                    closed_at: pilot.closed_at_m3,
+                    open_at: pilot.open_at_m3,
+                }),
                 kind: LinkKind::Tube,
                 radius: radius(tube),
                 tube: Some(TubeFlow::new(tube, radius(tube), fluid)),
@@ -106,6 +114,7 @@ pub(super) fn graph(
             Thing::Accumulator { index } => {
                 if let NetworkNode::Junction(junction) = from {
                     let written = wiring.accumulators[index].1;
+                    in_order.push(index);
                     network.accumulators.push(AccumulatorElement {
                         name: written.name.clone().unwrap_or_else(|| wiring.label(at)),
                         junction,
@@ -115,6 +124,10 @@ pub(super) fn graph(
                 }
             }
         }
+    }
+    for pilot in network.links.iter_mut().filter_map(|link| link.pilot.as_mut()) {
+        let place = in_order.iter().position(|&index| index == pilot.vessel);
+        pilot.vessel = place.unwrap_or_default();
     }
     if bladders.per_row == 0 {
         // conductance of the widest link, over the placeholder's length
@@ -237,6 +250,7 @@ fn opening(cell: NetworkNode, here: NetworkNode) -> Link {
         to: here,
         resistance: 0.0,
         opening: None,
+        pilot: None,
         kind: LinkKind::Opening,
         radius: 0.0,
         tube: None,
@@ -255,6 +269,7 @@ fn join(network: &mut ResolvedNetwork, [from, to]: [NetworkNode; 2], index: usiz
             to,
             resistance: 1.0 / network.turbines[index].conductance,
             opening: None,
+            pilot: None,
             kind: LinkKind::Turbine(index),
             radius: 0.0,
             tube: None,

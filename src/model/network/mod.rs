@@ -1,6 +1,7 @@
 //! The network as a graph: bladder ends, junctions and ports joined by conductances.
 //!
 //! ```text
+//! link               links, and valves that a vessel opens
 //! graph              graph of a resolved case
 //! components         connected components
 //! tube               inertia, unsteady friction and losses in tubes
@@ -9,6 +10,7 @@
 //! check_valve        check valves and relief valves
 //! ends               ends of tubes with inertia
 //! accumulator        vessels that store fluid under pressure
+//! pressure_volume    pressure of a vessel over its volume, from points
 //! pump               pressure of a pump over its flow
 //! ```
 
@@ -18,12 +20,14 @@ mod check_valve;
 mod components;
 mod ends;
 mod graph;
+mod link;
+mod pressure_volume;
 mod pump;
 pub mod tube;
 mod unsteady_friction;
 
 use super::{Wet, duct};
-use crate::case::schema::{BladderEnd, Bladders, Case};
+use crate::case::schema::{Bladders, Case};
 use crate::case::wiring::Wiring;
 use crate::error::Result;
 use crate::functions::signals::Signal;
@@ -33,82 +37,11 @@ pub use bladder_flow::AlongBladder;
 pub use check_valve::CheckValveLaw;
 pub use components::Component;
 pub use ends::TubeEnd;
+pub use link::{Link, LinkKind, NetworkNode, ValvePilot};
+pub use pressure_volume::PressureVolumeCurve;
 pub use pump::{PumpCharacteristic, PumpLaw};
 pub use tube::{FlowLaw, TubeFlow};
 pub use unsteady_friction::{BRANCHES, Ladder};
-
-/// A point of the graph.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum NetworkNode {
-    /// The outermost cell of a bladder, behind its half-cell resistance.
-    Cell {
-        /// Bladder, `0..n`: upper row first.
-        bladder: usize,
-        /// End of the bladder.
-        end: BladderEnd,
-    },
-    /// A junction without storage; its pressure is an unknown.
-    Junction(usize),
-    /// A point with prescribed pressure.
-    Port(usize),
-}
-
-/// Kind of resistance of a link, besides half cells.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum LinkKind {
-    /// No resistance: a bladder's end at a junction or a port.
-    Opening,
-    /// A tube.
-    Tube,
-    /// A turbine; index.
-    Turbine(usize),
-}
-
-/// `[E6]` A link between two points (A.13, A.67), with the opening `o` of its valve and its pump:
-///
-/// ```text
-/// q = g (p_a - p_b + p_pump)    g = o/(o (R_half,a + R_half,b + R_pump) + R)    R = μ l_c/q1c
-/// ```
-///
-/// A check valve is in series with all of these, [E7].
-#[derive(Clone, Debug)]
-pub struct Link {
-    /// Place of a tube among those of the case, tubes of chains first; 0 for other links.
-    pub order: usize,
-    /// Start of positive flow.
-    pub from: NetworkNode,
-    /// End of positive flow.
-    pub to: NetworkNode,
-    /// Resistance between the points, half cells excluded [Pa s/m^3].
-    pub resistance: f64,
-    /// Opening of the valve; `None`: no valve.
-    pub opening: Option<Signal>,
-    /// Kind of link.
-    pub kind: LinkKind,
-    /// Radius of a tube, or of the circular tube of equal permeability [m]; 0 for other links.
-    pub radius: f64,
-    /// Inertia and losses of a tube; none for creeping flow.
-    pub tube: Option<TubeFlow>,
-    /// Check valve.
-    pub check_valve: Option<CheckValveLaw>,
-    /// Pump.
-    pub pump: Option<PumpLaw>,
-    /// Hydrostatic pressure difference `ρ g (z_from - z_to)` [Pa], [E88].
-    pub head: f64,
-}
-
-impl Link {
-    /// True if its valve never opens.
-    pub fn is_shut(&self) -> bool {
-        let shut = |o: &Signal| o.is_constant() && o.value(0.0) <= 0.0;
-        self.opening.as_ref().is_some_and(shut)
-    }
-
-    /// Inertance of the fluid [kg/m^4]; 0 without inertia.
-    pub fn inertance(&self) -> f64 {
-        self.tube.map_or(0.0, |tube| tube.law.inertance)
-    }
-}
 
 /// Prescribed flow into a cell or a junction.
 #[derive(Clone, Debug)]
@@ -316,7 +249,7 @@ impl ResolvedNetwork {
             };
             let mut links = self.links.iter().filter(|l| inside(l.from) || inside(l.to));
             let lets_out = |l: &Link| matches!((l.from, l.to), (NetworkNode::Port(_), _) | (_, NetworkNode::Port(_)));
-            let steady = |l: &Link| l.check_valve.is_none() && l.opening.is_none();
+            let steady = |l: &Link| l.check_valve.is_none() && l.opening.is_none() && l.pilot.is_none();
             let open = links.clone().any(lets_out) && links.clone().all(steady);
             let in_series = links.try_fold(0.0, |sum, link| {
                 (link.resistance.is_finite()).then_some(sum + link.resistance)

@@ -131,7 +131,13 @@ fn wiring(case: &Case) -> Option<Value> {
                     None => format!("pump, {}", describe(signal, "Pa")),
                     Some(_) => format!("pump with a curve, factor {}", describe(signal, "1")),
                 });
-        let all: Vec<String> = [valve(tube.opening), check, pump].into_iter().flatten().collect();
+        let pilot = tube
+            .pilot
+            .map(|(_, pilot)| format!("valve, opened by {}", pilot.vessel));
+        let all: Vec<String> = [valve(tube.opening), pilot, check, pump]
+            .into_iter()
+            .flatten()
+            .collect();
         (!all.is_empty()).then(|| all.join("; "))
     };
     let tubes = found
@@ -139,13 +145,17 @@ fn wiring(case: &Case) -> Option<Value> {
         .iter()
         .map(|t| json!({"from": point(&t.points[0]), "to": point(&t.points[1]), "valve": within(t)}));
     let accumulators = found.accumulators.iter().map(|(at, one)| {
-        let words = match one.kind {
+        let words = match &one.kind {
             AccumulatorKind::Elastic { compliance_m3_pa, .. } => {
-                format!("accumulator, {} m³/Pa", significant(compliance_m3_pa, 3))
+                format!("accumulator, {} m³/Pa", significant(*compliance_m3_pa, 3))
             }
-            AccumulatorKind::Tank { volume_m3 } => format!("tank, {}", litres(volume_m3)),
+            AccumulatorKind::Tank { volume_m3 } => format!("tank, {}", litres(*volume_m3)),
             AccumulatorKind::Gas { volume_m3, .. } => {
-                format!("accumulator, {} of gas", litres(volume_m3))
+                format!("accumulator, {} of gas", litres(*volume_m3))
+            }
+            AccumulatorKind::Curve { volume_m3, .. } => {
+                let largest = volume_m3.last().copied().unwrap_or_default();
+                format!("accumulator, pressure curve up to {}", litres(largest))
             }
         };
         json!({"name": one.name, "at": point(at), "kind": "accumulator", "words": words})

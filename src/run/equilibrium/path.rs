@@ -9,6 +9,7 @@ use super::{EquilibriumEvent, EquilibriumOptions, EventKind, Path};
 use crate::discrete::System;
 use crate::discrete::extrema::MonitoredQuantity;
 use crate::error::SolverError;
+use crate::model::network::AccumulatorLaw;
 use crate::run::range::Limits;
 use crate::run::record::Control;
 use crate::sundials::{Kinsol, KinsolError, KinsolOptions};
@@ -41,12 +42,19 @@ const MOST_POINTS: usize = 5000;
 /// Largest share; a path beyond it is lost.
 const FURTHEST: f64 = 100.0;
 
-/// Squared weight of each unknown and of the share in the length of a step: root mean square of displacements in beam lengths.
+/// Squared weight of each unknown and of the share in the length of a step: root mean square of displacements in beam lengths, and volumes
+/// of vessels that may snap, in ranges of their curves.
 pub(super) fn weights(system: &System) -> Vec<f64> {
     let l = &system.layout;
     let mut weights = vec![0.0; l.len + 1];
     for unknown in l.lines.iter().flat_map(|line| line.u.clone()) {
         weights[unknown] = (l.scales[unknown] / system.model.length).powi(2) / system.mesh.nodes as f64;
+    }
+    for one in system.fluid.iter().flat_map(|fluid| &fluid.accumulators) {
+        if let AccumulatorLaw::Curve(curve) = &one.law {
+            let unknown = l.network.junction.start + one.junction;
+            weights[unknown] = (l.scales[unknown] / curve.range()).powi(2);
+        }
     }
     weights[l.len] = 1.0;
     weights

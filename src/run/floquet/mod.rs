@@ -22,8 +22,11 @@ pub use verdict::{CycleStability, CycleVerdict};
 const RESIDUAL: f64 = 1e-8;
 /// Multipliers below this decay within a period: no frequency or rate can be read from them.
 const DEAD: f64 = 1e-9;
-/// Largest distance from 1 of the multiplier of a shift in time.
-const TRIVIAL: f64 = 0.01;
+/// Largest distance from 1 of the multiplier of a shift in time; the second if its vector is parallel to the flow. Where a motion snaps,
+/// the steps displace this multiplier most.
+const TRIVIAL: [f64; 2] = [0.01, 0.25];
+/// Cosine above which a vector is parallel to the flow.
+const PARALLEL: f64 = 0.99;
 /// Largest number of vectors of the Krylov space.
 const MOST_VECTORS: usize = 600;
 
@@ -134,9 +137,16 @@ pub fn multipliers(scene: &PeriodicScene, cycle: &mut Cycle, count: usize) -> Fl
 fn along_flow(scene: &PeriodicScene, cycle: &Cycle, found: &[krylov::Eigen]) -> Option<usize> {
     let mut flow = cycle.yp.clone();
     scene.admit(&mut flow);
-    let near = |eigen: &krylov::Eigen| (eigen.value - 1.0).norm() < TRIVIAL;
-    let parallel =
-        |eigen: &krylov::Eigen| kernels::dot(&flow, &eigen.vector[0]).hypot(kernels::dot(&flow, &eigen.vector[1]));
+    let speed = kernels::dot(&flow, &flow).sqrt();
+    let parallel = |eigen: &krylov::Eigen| {
+        let parts = [0, 1].map(|k| kernels::dot(&flow, &eigen.vector[k]));
+        parts[0].hypot(parts[1]) / speed
+    };
+    let near = |eigen: &krylov::Eigen| {
+        let [always, along] = TRIVIAL;
+        let limit = if parallel(eigen) > PARALLEL { along } else { always };
+        (eigen.value - 1.0).norm() < limit
+    };
     let candidates = found.iter().enumerate().filter(|(_, eigen)| near(eigen));
     let best = candidates.max_by(|a, b| parallel(a.1).total_cmp(&parallel(b.1)));
     best.map(|(k, _)| k)

@@ -60,14 +60,19 @@ pub fn find(case: &Case, stop: &StopFlag) -> Result<(PeriodicScene, Cycle)> {
     let mut y = transient(case, &scene)?;
     let mut window = (1.0 - TRANSIENT) * case.time.end_s;
     let mut search = ShootingRecord::default();
-    let mut before = f64::INFINITY;
+    let (mut before, mut amplitude) = (f64::INFINITY, 0.0);
     let mut reason = None;
     for _ in 0..TRIES.0 {
         let motion = observe(&scene, &y, window).map_err(fault)?;
-        if motion.size < REST || reason.is_some() && motion.amplitude < before * (1.0 - DECAY) {
+        let extent = if motion.amplitude > 0.0 {
+            motion.amplitude
+        } else {
+            motion.size
+        };
+        if motion.size < REST || reason.is_some() && extent < before * (1.0 - DECAY) {
             return Err(rest(case, motion.amplitude));
         }
-        before = motion.amplitude;
+        (before, amplitude) = (extent, motion.amplitude);
         let Some(period) = returns(&scene, &motion, case.time.end_s).map_err(fault)? else {
             let reason = "its last state does not return".to_string();
             return Err(none(case, motion.amplitude, &reason));
@@ -82,7 +87,7 @@ pub fn find(case: &Case, stop: &StopFlag) -> Result<(PeriodicScene, Cycle)> {
         y = scene.go_on(&motion.y, TRIES.1, &mut search).map_err(fault)?;
         window = 3.0 * period;
     }
-    Err(none(case, before, &reason.unwrap_or_default()))
+    Err(none(case, amplitude, &reason.unwrap_or_default()))
 }
 
 /// Finds a known self-oscillation again, at the tolerance of the scene.
@@ -307,9 +312,13 @@ fn none(case: &Case, amplitude: f64, reason: &str) -> Error {
         code: Code::NoCycle,
         at: StopPoint::Time(0.0),
         what: format!(
-            "no self-oscillation was found: nothing drives {} periodically, and {reason}. Amplitude at the end: {}",
+            "no self-oscillation was found: nothing drives {} periodically, and {reason}{}",
             case.name,
-            quantity(amplitude, "m", 3)
+            match amplitude > 0.0 {
+                true => format!(". Amplitude at the end: {}", quantity(amplitude, "m", 3)),
+                // of a network beside a beam at rest
+                false => String::new(),
+            }
         ),
         unknown: None,
         cause,

@@ -38,8 +38,8 @@ impl EffectScene<'_> {
         let softness = compression.compressibility(-self.scales.pressure);
         let ends = wet.network.tube_ends().into_iter();
         ends.map(|end| {
-            let walls = end.vessel.map_or(0.0, |law| self.stiffest(&law));
-            let held = end.vessel.map_or(0.0, |law| law.volume_at_rest()) * softness;
+            let walls = end.vessel.as_ref().map_or(0.0, |law| self.stiffest(law));
+            let held = end.vessel.as_ref().map_or(0.0, |law| law.volume_at_rest()) * softness;
             let stored = held + end.in_tubes * softness;
             let departure = match end.check_valve {
                 true => 1.0,

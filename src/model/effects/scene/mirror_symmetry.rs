@@ -44,7 +44,10 @@ impl EffectScene<'_> {
             all
         };
         let steady = network.ports.iter().all(|p| p.pressure.is_constant());
-        let fixed = network.links.iter().all(|link| link.opening.is_none());
+        let fixed = network
+            .links
+            .iter()
+            .all(|link| link.opening.is_none() && link.pilot.is_none());
         let equal = (0..wet.per_row).all(|j| {
             let [upper, lower] = wet.areas_of(j);
             let [above, below] = wet.pair(j).map(|bladder| wet.has(bladder));
