@@ -2,7 +2,9 @@
 
 use nalgebra::Complex;
 
-use super::SpectralError;
+use super::krylov::unit;
+use super::refine::refine;
+use super::{EigenPair, SpectralError};
 use crate::integrate::halt;
 use crate::sparse::KluError;
 use crate::sparse::Pattern;
@@ -177,6 +179,25 @@ impl<'a> Factors<'a> {
         self.0.solve_adjoint(b);
         b.iter_mut().for_each(|x| *x = x.conj());
         finite(b)
+    }
+
+    /// The eigenpair that inverse iteration with the shift s approaches, in general the nearest one.
+    ///
+    /// # Errors
+    /// The pencil is singular near s.
+    pub fn eigenpair(&mut self, s: Complex<f64>) -> Result<EigenPair, SpectralError> {
+        let shifted = &mut self.0;
+        shifted.factor(s)?;
+        // the factors are those of other shifts from now on
+        shifted.shift = Complex::new(f64::NAN, f64::NAN);
+        // no eigenvector of a symmetric beam is orthogonal to this one
+        let begin = |k: usize| Complex::new((1.7 * k as f64).sin(), (0.6 * k as f64).cos());
+        let mut v: Vec<_> = (0..shifted.differential.len()).map(begin).collect();
+        let mut next = v.clone();
+        shifted.apply(&v, &mut next);
+        std::mem::swap(&mut v, &mut next);
+        let x = unit(shifted.whole(&unit(v)).to_vec());
+        refine(shifted, s, x)
     }
 
     fn factor(&mut self, s: Complex<f64>) -> Result<(), SpectralError> {

@@ -2,7 +2,6 @@
 
 use nalgebra::Complex;
 
-use super::BandPole;
 use crate::error::Result;
 use crate::integrate::halt;
 use crate::numerics::rational::{AxisSamples, RationalFit, relative_error};
@@ -122,16 +121,6 @@ impl ApproximatedResponse {
     /// Transfer functions of all outputs at a frequency [Hz].
     pub fn at(&self, hz: f64) -> Vec<Complex<f64>> {
         self.fit.at(std::f64::consts::TAU * hz)
-    }
-
-    /// Poles with positive imaginary part. The error bound is the distance to the nearest pole of an approximation of the same samples
-    /// whose permitted error is larger by the factor `coarser`.
-    pub(super) fn confirmed_poles(&self, coarser: f64) -> Vec<BandPole> {
-        let permitted = coarser * self.error.max(f64::EPSILON);
-        let other = RationalFit::new(&self.samples, &self.medians, permitted).poles();
-        let bound = |s: Complex<f64>| other.iter().map(|p| (p - s).norm()).fold(f64::INFINITY, f64::min);
-        let poles = self.fit.poles().into_iter().filter(|s| s.im > 0.0);
-        poles.map(|s| BandPole { s, bound: bound(s) }).collect()
     }
 
     /// Error at a frequency [Hz]: the larger one of the samples on either side. Rounding errors at sharp peaks remain there.

@@ -149,9 +149,8 @@ pub fn respond_on_mesh(case: &Case, request: &Request, response: LinearResponse)
     let known: Vec<_> = found.poles.iter().map(|pole| pole.s).collect();
     let approximated = ApproximatedResponse::new(&response, request.around(), &known, OWN)?;
     found.complete(&response, &approximated, request.around());
-    let Poles { mut poles, growing, .. } = found;
+    let Poles { poles, growing, .. } = found;
     let (frequencies, mut curves) = curves(&response, &approximated, request, &poles);
-    poles.retain(BandPole::confirmed);
     exact_peaks(&response, &mut curves)?;
     Ok(BandResponse {
         response,

@@ -69,9 +69,7 @@ pub(super) fn peaks(
         all.push(BandPeak {
             frequency_hz,
             value: at(frequency_hz),
-            pole: nearest
-                .filter(|pole| (pole.s.im - s).abs() < 0.1 * s && pole.has_damping())
-                .copied(),
+            pole: nearest.filter(|pole| (pole.s.im - s).abs() < 0.1 * s).copied(),
         });
     }
     all

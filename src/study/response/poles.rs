@@ -7,19 +7,15 @@ use crate::case::Case;
 use crate::error::numbers::counted;
 use crate::run::modes;
 use crate::run::response::LinearResponse;
-use crate::spectral::{self, EigenvalueOptions};
+use crate::spectral::{self, EigenvalueOptions, Factors};
 
-/// Relative distance of an eigenvalue from the pole of an approximation that stands for it.
+/// Relative error bound up to which an eigenvalue counts as a pole.
 const NEAR_POLE: f64 = 0.02;
-/// Error bound over the decay rate up to which a damping ratio is known.
-const OF_DAMPING: f64 = 0.05;
 /// Relative difference of one eigenvalue found twice.
 const SAME_POLE: f64 = 1e-6;
 /// Largest number of pole pairs to compute in the band, and largest number of unknowns of a system in which they are searched.
 const POLES: usize = 48;
 const SEARCHED: usize = 4000;
-/// Permitted error of the approximation whose poles confirm others, over that of the approximation.
-const COARSER: f64 = 10.0;
 /// Ratio of a real part to its error bound above which its sign is certain.
 const CERTAIN: f64 = 10.0;
 
@@ -30,18 +26,6 @@ pub struct BandPole {
     pub s: Complex<f64>,
     /// Bound of its numerical error [1/s].
     pub bound: f64,
-}
-
-impl BandPole {
-    /// True if another approximation has this pole, too.
-    pub fn confirmed(&self) -> bool {
-        self.bound < NEAR_POLE * self.s.norm()
-    }
-
-    /// True if its damping is known.
-    pub fn has_damping(&self) -> bool {
-        self.s.re == 0.0 || self.bound < OF_DAMPING * self.s.re.abs()
-    }
 }
 
 /// Poles in a band, and those with positive real part. The search omits the memory of unsteady friction, whose many decay modes would
@@ -117,34 +101,32 @@ impl Poles {
         self.poles.dedup_by(|a, b| (a.s - b.s).norm() < 1e-9 * b.s.norm());
     }
 
-    /// Adds poles that outputs show in a band [Hz] and the search did not find: eigenvalues nearest to the poles of an approximation. In a
-    /// large system they are poles of the approximation; the error bound is the difference to those of a coarser one.
+    /// Adds poles that outputs show in a band [Hz] and the search did not find: those that inverse iteration finds from the poles of an
+    /// approximation.
     pub(super) fn complete(&mut self, response: &LinearResponse, shown: &ApproximatedResponse, band: [f64; 2]) {
         let [from, to] = band.map(|hz| std::f64::consts::TAU * hz);
         let within = |s: Complex<f64>| (from..=to).contains(&s.im);
-        if !self.searched {
-            self.poles = shown.confirmed_poles(COARSER);
-            self.poles.retain(|pole| within(pole.s));
-            let grows = |pole: &&BandPole| pole.s.re > CERTAIN * pole.bound;
-            self.growing = self.poles.iter().filter(grows).map(|pole| pole.s).collect();
-            return self.sort();
-        }
-        let poles = if self.whole { vec![] } else { shown.fit.poles() };
-        for about in poles.into_iter().filter(|s| within(*s)) {
-            let nearest = spectral::nearest(&response.about.pencil(), about, 2, &EigenvalueOptions::default());
-            let near = |pair: &spectral::EigenPair| (pair.s - about).norm();
-            let pairs = nearest.map_or(vec![], |found| found.pairs).into_iter();
-            let found = pairs.min_by(|a, b| near(a).total_cmp(&near(b)));
-            let Some(pair) = found.filter(|pair| within(pair.s) && near(pair) < NEAR_POLE * about.norm()) else {
-                continue;
-            };
+        let mut poles = if self.whole { vec![] } else { shown.fit.poles() };
+        poles.retain(|s| within(*s));
+        let Some(mut factors) = poles
+            .first()
+            .and_then(|first| Factors::new(&response.about.pencil(), *first).ok())
+        else {
+            return;
+        };
+        for about in poles {
+            let Ok(pair) = factors.eigenpair(about) else { continue };
             let known = |pole: &BandPole| (pole.s - pair.s).norm() < SAME_POLE * pair.s.norm();
-            if !self.poles.iter().any(known) {
+            if within(pair.s) && pair.error < NEAR_POLE * pair.s.norm() && !self.poles.iter().any(known) {
                 self.poles.push(BandPole {
                     s: pair.s,
                     bound: pair.error,
                 });
             }
+        }
+        if !self.searched {
+            let grows = |pole: &&BandPole| pole.s.re > CERTAIN * pole.bound;
+            self.growing = self.poles.iter().filter(grows).map(|pole| pole.s).collect();
         }
         self.sort();
     }
