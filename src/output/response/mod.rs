@@ -29,15 +29,19 @@ pub const PICTURE: &str = "response.svg";
 pub const NYQUIST: &str = "nyquist.svg";
 
 /// A transfer function with its name, unit and values: real part, imaginary part, errors.
-struct Transfer<'a> {
-    name: String,
-    hz: &'a [f64],
-    unit: &'a str,
-    parts: [&'a [f64]; 3],
+pub struct Transfer<'a> {
+    /// Key of the output, with the harmonic of a sideband.
+    pub name: String,
+    /// Frequencies [Hz].
+    pub hz: &'a [f64],
+    /// Unit of the output.
+    pub unit: &'a str,
+    /// Real part, imaginary part and error at each frequency; no errors if they are unknown.
+    pub parts: [&'a [f64]; 3],
 }
 
 /// Transfer functions of all outputs; the direct one of each precedes its sidebands.
-fn transfers(found: &ResponseRecord) -> Vec<Transfer<'_>> {
+pub fn transfers(found: &ResponseRecord) -> Vec<Transfer<'_>> {
     let mut all = vec![];
     let hz = &found.frequency_hz[..];
     for curve in found.curves() {

@@ -14,7 +14,9 @@
 pub mod cycle;
 mod instant;
 pub mod power;
+pub mod self_test;
 pub mod sensitivity;
+mod shapes;
 pub mod state_space;
 
 use std::collections::BTreeSet;
