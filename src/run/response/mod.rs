@@ -225,14 +225,7 @@ impl Endpoints {
             )));
         };
         let columns = columns(&system);
-        let mut chosen = vec![];
-        for name in outputs {
-            // a name with its unit is another spelling of the same output
-            let place = find(&columns, name)?;
-            if !chosen.contains(&place) {
-                chosen.push(place);
-            }
-        }
+        let chosen = find_each(&columns, outputs)?;
         let outputs = chosen.iter().map(|&place| columns[place].clone()).collect();
         Ok(Self {
             remembers,
@@ -303,6 +296,18 @@ fn is_linear(column: &HistoryColumn) -> bool {
     // the volume through a port is an integral
     let integral = column.name.starts_with("port_") && column.unit == "m^3";
     !matches!(column.unit, "W" | "J") && !integral
+}
+
+/// Indices of outputs by their names, each once: a name with its unit is another spelling of the same output.
+fn find_each(columns: &[HistoryColumn], names: &[String]) -> Result<Vec<usize>> {
+    let mut chosen = vec![];
+    for name in names {
+        let place = find(columns, name)?;
+        if !chosen.contains(&place) {
+            chosen.push(place);
+        }
+    }
+    Ok(chosen)
 }
 
 /// Index of an output by its name, with or without its unit.
