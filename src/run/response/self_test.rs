@@ -72,7 +72,7 @@ impl SelfTest {
         if growing > 0 {
             return Err("small motions about the state grow".into());
         }
-        // smaller changes tell nonlinearity from errors of the model
+        // differences by nonlinearity vanish with the change, those by errors of the model do not
         let mut best: Option<Self> = None;
         for part in PARTS {
             let test = Self::with(response, model, part)?;
