@@ -230,3 +230,17 @@ fn a_mode_without_damping_has_no_model() {
         .to_string();
     assert!(refused.contains("has no damping"), "{refused}");
 }
+
+/// Goal: an opening without flow has no influence; its model has no states, and the self-test says that nothing moves.
+#[test]
+fn an_input_without_influence_has_no_test() {
+    let case = checked(&shipped("bladder-pump"));
+    let response = response(&case, "/network/chains/0/opening", &["tip_u1"]);
+    let mut found = poles(&case, None, &response, [1.0, 200.0]).unwrap();
+    if let Ok(model) = reduce(&response, [1.0, 200.0], &mut found, 1e-3) {
+        assert_eq!(model.b.len(), 0);
+    }
+    let model = StateSpace::new(&response).unwrap();
+    let refused = SelfTest::new(&response, &model, 0).unwrap_err();
+    assert!(refused.contains("nothing moves"), "{refused}");
+}

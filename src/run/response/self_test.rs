@@ -23,6 +23,8 @@ const SIZE: f64 = 1e-3;
 const PARTS: [f64; 3] = [1.0, 0.1, 0.01];
 /// Largest change of an opening.
 const OPENING: f64 = 0.01;
+/// Motion, over that of the test, that is rounding error.
+const NOTHING: f64 = 1e-9;
 /// Frequencies at which sizes of unknowns are computed, and their ratio; smallest size over the largest.
 const FREQUENCIES: usize = 16;
 const PER_FREQUENCY: f64 = 1.8;
@@ -195,7 +197,7 @@ impl SmallMotion {
             _ => f64::INFINITY,
         };
         let step = part * SIZE * largest.recip().min(own);
-        if !step.is_finite() {
+        if !step.is_finite() || step * largest < NOTHING * part * SIZE {
             return Err("nothing moves with the input".into());
         }
         let least = SMALL * sizes.iter().copied().fold(0.0, f64::max);
