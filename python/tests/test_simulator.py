@@ -2,6 +2,8 @@
 
 import importlib.util
 import pickle
+import subprocess
+import sys
 from pathlib import Path
 
 import numpy as np
@@ -170,3 +172,23 @@ def test_the_environment_learns_nothing_new_from_reset():
     controlled = episode(6.0)
     assert controlled == episode(6.0)
     assert controlled > episode(0.0)
+
+
+def test_a_loop_designed_on_the_model_is_that_of_the_beam(program, tmp_path):
+    """The figures of the tour: the reduced model predicts the closed loop of the nonlinear beam; without the notch the loop is unstable."""
+    pytest.importorskip("scipy")
+    model = tmp_path / "model.npz"
+    case = EXAMPLE.parents[2] / "cases/tour-actuator.json"
+    program("export", case, "--set", f"{INLET}=0", "--state-space", model, "--error", "1e-3", "--input", INLET, "--output", "tip_u1")
+    loop = EXAMPLE.with_name("pressure_loop.py")
+    told = subprocess.run([sys.executable, str(loop), str(model)], capture_output=True, text=True, check=True).stdout
+    assert told.strip() in (EXAMPLE.parents[2] / "docs/tour-actuator.md").read_text(encoding="utf-8"), told
+    spec = importlib.util.spec_from_file_location("pressure_loop", loop)
+    example = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(example)
+    stored = np.load(model)
+    matrices = [stored[name] for name in "ABCD"]
+    plant = example.signal.cont2discrete(matrices, example.PERIOD)[:4]
+    for notched in (True, False):
+        tip = example.closed_loop(example.design(matrices, notched), example.Linear(*plant).advance)
+        assert (abs(tip).max() < 2 * example.GOAL) == notched

@@ -84,6 +84,7 @@ fn answer(case: &str, found: &CycleBand) -> Result<ResponseRecord> {
         first,
         further: curves.collect(),
         poles: vec![],
+        shapes: None,
         powers: vec![],
         sensitivities: Ordered::default(),
         warnings,

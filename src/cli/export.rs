@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use clap::{Args, ValueEnum};
-use serde_json::json;
+use serde_json::{Value, json};
 
 use super::response::check_band;
 use crate::case;
@@ -19,6 +19,7 @@ use crate::output::numbers::{counted, significant};
 use crate::output::state_space as files;
 use crate::run::record::HistoryColumn;
 use crate::run::response::LinearResponse;
+use crate::run::response::self_test::SelfTest;
 use crate::run::response::state_space::{ModelReduction, StateSpace};
 use crate::study::response::reduced::reduce;
 use crate::study::response::{cautions, growing, poles};
@@ -56,6 +57,9 @@ pub struct ExportArguments {
     /// Last frequency of the reduced model [Hz]
     #[arg(long, value_name = "HZ", default_value_t = 200.0, requires = "error", allow_negative_numbers = true, value_parser = super::progress_line::frequency)]
     pub to: f64,
+    /// Omit the self-test of the model, which compares it with the nonlinear equations
+    #[arg(long, requires = "state_space")]
+    pub no_self_test: bool,
     /// Formats: csv/FIELD.csv with a row an instant and a column a place; vtk/CASE.pvd with beam, bladders and tubes
     #[arg(
         long,
@@ -182,21 +186,51 @@ fn state_space(asked: &ExportArguments, file: &Path, input: &str) -> Result<Exit
         None => (StateSpace::new(&response)?, growing(&case, asked.at, &response)),
     };
     let outputs: Vec<String> = response.outputs.iter().map(HistoryColumn::key).collect();
+    let known = growing.as_ref().copied().unwrap_or(0);
+    let tested = (!asked.no_self_test).then(|| SelfTest::new(&response, &model, known));
     files::write(
         file,
         &case.name,
         &response.input,
         outputs.clone(),
         response.about.at,
-        &model,
+        (&model, tested.as_ref().and_then(|tested| tested.as_ref().ok())),
     )?;
     let states = model.b.len();
-    let found = match growing {
+    let mut found = match growing {
         Ok(growing) => cautions(growing, response.about.moving()),
         Err(why) => vec![Code::ErrorEstimate.warning(format!("not known: poles: {why}"))],
     };
+    let (self_test, about_test) = match &tested {
+        Some(Ok(test)) => {
+            let (worst, difference) = test.worst();
+            let line = format!(
+                "self-test: input changed by {} within {} s; largest difference from the nonlinear equations: {} of the largest change of {}, over {} s\n",
+                significant(test.step, 2),
+                significant(test.ramp_s, 2),
+                error_percent(difference),
+                outputs[worst],
+                significant(test.time_s, 3),
+            );
+            if !test.passed() {
+                found.push(Code::ErrorEstimate.warning(format!(
+                    "the self-test failed: {} differs from the nonlinear equations by {} of its largest change (limit {}). Motions faster \
+                     than the band, or a law with a kink at this state, are not in the model. Increase --to, or use another state (--at)",
+                    outputs[worst],
+                    error_percent(difference),
+                    error_percent(test.limit)
+                )));
+            }
+            (serde_json::to_value(test).unwrap_or_default(), line)
+        }
+        Some(Err(why)) => (json!({"reason": why}), format!("no self-test: {why}\n")),
+        None => (Value::Null, String::new()),
+    };
     if asked.json {
         let mut answer = json!({"path": file, "states": states, "outputs": outputs, "input": response.input, "input_rate": model.input_rate, "warnings": found});
+        if tested.is_some() {
+            answer["self_test"] = self_test;
+        }
         if let Some(reduction) = model.reduction {
             let [modes, kept] = reduction.modes;
             answer["reduction"] = json!({"band_hz": reduction.band, "error": reduction.error, "static_gain": reduction.static_gain, "modes": modes, "modes_in_model": kept, "solved": reduction.solved});
@@ -205,7 +239,7 @@ fn state_space(asked: &ExportArguments, file: &Path, input: &str) -> Result<Exit
     } else {
         let of = ["", "rate of ", "second rate of "][model.input_rate.min(2)];
         super::print(&format!(
-            "{}, input {of}{}, outputs {}\n{}{}\n{}",
+            "{}, input {of}{}, outputs {}\n{}{about_test}{}\n{}",
             counted(states as u64, "state"),
             response.input,
             outputs.join(", "),

@@ -30,6 +30,7 @@ mod progress_line;
 mod report;
 mod resources;
 mod response;
+mod response_shapes;
 mod result_folder;
 mod run;
 mod schema;

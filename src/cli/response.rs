@@ -6,7 +6,7 @@ use clap::Args;
 
 use super::arguments::{CaseArguments, ResultArguments, UncertainArguments};
 use super::uncertain::{self, Uncertain};
-use super::{cycle_response, resources, terminal};
+use super::{cycle_response, resources, response_shapes, terminal};
 use crate::case::parameter::Parameter;
 use crate::case::{Case, inherited};
 use crate::discrete::ledger::EnergyRate;
@@ -104,6 +104,7 @@ pub fn response(asked: &ResponseArguments) -> Result<ExitCode> {
     let found = respond(&case, &request, linear)?;
     let mut answer = answer(&case.name, &request, &found)?;
     add_values(&mut answer, &case, request.at, &found, (&frequencies, &parameters))?;
+    answer.shapes = response_shapes::shapes(&found, &frequencies)?;
     if asked.power {
         let powers = powers(&found.response, &found.frequencies)?;
         answer.powers = power_curves(&powers);
@@ -229,6 +230,7 @@ fn answer(case: &str, request: &Request, found: &BandResponse) -> Result<Respons
         first,
         further: curves.collect(),
         poles: found.poles.iter().map(pole).collect(),
+        shapes: None,
         powers: vec![],
         sensitivities: Ordered::default(),
         warnings,

@@ -9,6 +9,7 @@ use zip::ZipWriter;
 use super::arrays::write_array;
 use super::folder::{fault, put_whole};
 use crate::error::{Error, Result};
+use crate::run::response::self_test::SelfTest;
 use crate::run::response::state_space::StateSpace;
 
 /// A model with the names of its case, input and outputs.
@@ -34,16 +35,26 @@ struct Named<'a> {
     band_hz: Option<[f64; 2]>,
     #[serde(skip_serializing_if = "Option::is_none")]
     error: Option<f64>,
+    /// Comparison with the nonlinear equations, if there is one.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    self_test: Option<&'a SelfTest>,
 }
 
 /// Writes a model to a file, `.npz`, `.mat` or `.json`.
 ///
 /// # Errors
 /// The file has another ending, or the file cannot be written.
-pub fn write(path: &Path, case: &str, input: &str, outputs: Vec<String>, at_s: f64, model: &StateSpace) -> Result<()> {
+pub fn write(
+    path: &Path,
+    case: &str,
+    input: &str,
+    outputs: Vec<String>,
+    at_s: f64,
+    (model, tested): (&StateSpace, Option<&SelfTest>),
+) -> Result<()> {
     let bytes = match path.extension().and_then(|ending| ending.to_str()) {
-        Some("npz") => npz(model).map_err(|why| fault("write", path, why))?,
-        Some("mat") => mat(model),
+        Some("npz") => npz(model, tested).map_err(|why| fault("write", path, why))?,
+        Some("mat") => mat(model, tested),
         Some("json") => {
             let named = Named {
                 case,
@@ -61,6 +72,7 @@ pub fn write(path: &Path, case: &str, input: &str, outputs: Vec<String>, at_s: f
                 z0: &model.z0,
                 band_hz: model.reduction.map(|reduction| reduction.band),
                 error: model.reduction.map(|reduction| reduction.error),
+                self_test: tested,
             };
             (serde_json::to_string(&named).unwrap_or_default() + "\n").into_bytes()
         }
@@ -76,7 +88,7 @@ pub fn write(path: &Path, case: &str, input: &str, outputs: Vec<String>, at_s: f
 }
 
 /// Matrices of a file: name, rows, columns, entries row by row.
-fn matrices(model: &StateSpace) -> Vec<(&'static str, [usize; 2], Vec<f64>)> {
+fn matrices(model: &StateSpace, tested: Option<&SelfTest>) -> Vec<(&'static str, [usize; 2], Vec<f64>)> {
     let [n, outputs] = [model.b.len(), model.d.len()];
     let all = |rows: &[Vec<f64>]| rows.iter().flatten().copied().collect::<Vec<f64>>();
     let mut matrices = vec![
@@ -93,12 +105,17 @@ fn matrices(model: &StateSpace) -> Vec<(&'static str, [usize; 2], Vec<f64>)> {
         matrices.push(("band_hz", [2, 1], reduction.band.to_vec()));
         matrices.push(("error", [1, 1], vec![reduction.error]));
     }
+    if let Some(test) = tested {
+        matrices.push(("self_test_step", [1, 1], vec![test.step]));
+        matrices.push(("self_test_time_s", [1, 1], vec![test.time_s]));
+        matrices.push(("self_test_difference", [outputs, 1], test.difference.clone()));
+    }
     matrices
 }
 
-fn npz(model: &StateSpace) -> io::Result<Vec<u8>> {
+fn npz(model: &StateSpace, tested: Option<&SelfTest>) -> io::Result<Vec<u8>> {
     let mut npz = ZipWriter::new(io::Cursor::new(Vec::new()));
-    for (name, [rows, columns], entries) in matrices(model) {
+    for (name, [rows, columns], entries) in matrices(model, tested) {
         let vector = !["A", "B", "C", "D"].contains(&name);
         let shape = [rows as u64, columns as u64];
         write_array(&mut npz, name, if vector { &shape[..1] } else { &shape }, entries)?;
@@ -108,9 +125,9 @@ fn npz(model: &StateSpace) -> io::Result<Vec<u8>> {
 
 /// A MATLAB file of level 4: for each matrix five integers (type, rows, columns, no imaginary part, length of the name), the name, and
 /// the entries column by column, all little-endian. Source: MATLAB, MAT-File Format.
-fn mat(model: &StateSpace) -> Vec<u8> {
+fn mat(model: &StateSpace, tested: Option<&SelfTest>) -> Vec<u8> {
     let mut bytes = vec![];
-    for (name, [rows, columns], entries) in matrices(model) {
+    for (name, [rows, columns], entries) in matrices(model, tested) {
         for number in [0, rows, columns, 0, name.len() + 1] {
             bytes.extend((number as u32).to_le_bytes());
         }

@@ -32,6 +32,9 @@ pub struct ResponseRecord {
     pub further: Vec<ResponseCurve>,
     /// Poles in the band, the lowest first.
     pub poles: Vec<ResponsePole>,
+    /// Motion at peaks and at requested frequencies.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub shapes: Option<ResponseShapes>,
     /// Mean powers at each frequency, if requested: put in, harvested and lost, those that are not zero.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub powers: Vec<PowerCurve>,
@@ -149,6 +152,28 @@ impl ResponseCurve {
         let largest = self.error.iter().copied().reduce(f64::max)? / sizes().fold(0.0, f64::max);
         Some([median?.0, largest]).filter(|both| both.iter().all(|e| e.is_finite()))
     }
+}
+
+/// Shapes of the response at frequencies, per unit of the input, with six digits.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct ResponseShapes {
+    /// Position of each node along the undeformed beam [m].
+    pub theta_m: Vec<f64>,
+    /// Shapes, in ascending order of frequency.
+    pub at: Vec<ResponseShape>,
+}
+
+/// Motion of the beam at a frequency: real and imaginary parts.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct ResponseShape {
+    /// Frequency [Hz].
+    pub frequency_hz: f64,
+    /// Displacement across of each node [m over the unit of the input].
+    pub u1: [Vec<f64>; 2],
+    /// Displacement along of each node [m over the unit of the input].
+    pub u3: [Vec<f64>; 2],
+    /// Mean pressure of each bladder, upper row first [Pa over the unit of the input]; empty without bladders.
+    pub pressure: [Vec<f64>; 2],
 }
 
 /// Mean power over a cycle, for an input of unit amplitude.

@@ -87,6 +87,7 @@ fn shortened(line: &str) -> Option<String> {
         "export",
         "git",
         "pip",
+        "python",
         "cd ",
         "#",
     ]

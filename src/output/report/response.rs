@@ -1,13 +1,13 @@
 //! Page of `response`: amplitude and phase, and the peaks.
 
-use serde_json::json;
+use serde_json::{Value, json};
 
-use super::{FolderKind, Page, Place, StoredResult};
+use super::{FolderKind, Page, Place, StoredResult, base64};
 use crate::error::Result;
 use crate::output::folder::CASE;
 use crate::output::numbers::{counted, significant};
-use crate::output::response::{JSON, NYQUIST, PICTURE};
-use crate::results::response::{LinearisedState, ResponseRecord};
+use crate::output::response::{JSON, NYQUIST, PICTURE, Transfer, transfers};
+use crate::results::response::{LinearisedState, ResponseRecord, ResponseShape, ResponseShapes};
 
 /// Data of the page.
 pub fn data(place: &Place) -> Result<Page> {
@@ -35,18 +35,21 @@ pub fn data(place: &Place) -> Result<Page> {
             counted(found.poles.len() as u64, "pole")
         ),
     );
-    page.put(
-        "figures",
-        json!([{
-            "title": "Amplitude and phase",
+    page.put("curves", curves(&found));
+    page.put("shapes", found.shapes.as_ref().map(shapes));
+    let mut figures = vec![json!({
+        "title": "In the complex plane",
+        "picture": place.picture(NYQUIST),
+        "about": "Real and imaginary part of each response, over its largest amplitude (Nyquist). A lightly damped mode is a circle.",
+    })];
+    if !found.powers.is_empty() {
+        figures.insert(0, json!({
+            "title": "Amplitude, phase and mean powers",
             "picture": place.picture(PICTURE),
-            "about": "Amplitude in decibel: 20 log10 of the output over the input, in SI units. The phase is that of the output before the input.",
-        }, {
-            "title": "In the complex plane",
-            "picture": place.picture(NYQUIST),
-            "about": "Real and imaginary part of each response, over its largest amplitude (Nyquist). A lightly damped mode is a circle.",
-        }]),
-    );
+            "about": "Amplitude in decibel: 20 log10 of the output over the input, in SI units. Powers are means over a cycle.",
+        }));
+    }
+    page.put("figures", figures);
     let rows = found.curves().flat_map(|curve| {
         let row = |peak: &crate::results::response::ResponsePeak| {
             json!([
@@ -85,4 +88,49 @@ pub fn data(place: &Place) -> Result<Page> {
         ),
     );
     Ok(page)
+}
+
+/// Real part, imaginary part and error of each curve, with the sidebands.
+fn curves(found: &ResponseRecord) -> Value {
+    let curve = |transfer: &Transfer| {
+        let [real, imag, error] = transfer.parts;
+        json!({"label": transfer.name, "unit": transfer.unit, "real": base64::numbers(real.iter().copied()),
+               "imag": base64::numbers(imag.iter().copied()), "error": base64::numbers(error.iter().copied())})
+    };
+    let all: Vec<Value> = transfers(found).iter().map(curve).collect();
+    json!({"hz": base64::numbers(found.frequency_hz.iter().copied()), "all": all, "input": found.input})
+}
+
+/// Amplitudes and phases of the shapes, as those of modes.
+fn shapes(found: &ResponseShapes) -> Value {
+    type Part = fn(&ResponseShape) -> &[Vec<f64>; 2];
+    let all = |of: Part, value: fn(f64, f64) -> f64| {
+        let one = |shape| {
+            let [re, im] = of(shape);
+            re.iter().zip(im).map(move |(re, im)| value(*re, *im))
+        };
+        base64::numbers(found.at.iter().flat_map(one))
+    };
+    let mut page = json!({"theta_m": base64::numbers(found.theta_m.iter().copied()), "most": found.at.len(),
+                          "hz": found.at.iter().map(|shape| shape.frequency_hz).collect::<Vec<_>>()});
+    let parts: [(&str, &str, Part); 3] = [
+        ("u1", "m", |shape| &shape.u1),
+        ("u3", "m", |shape| &shape.u3),
+        ("pressure", "pa", |shape| &shape.pressure),
+    ];
+    for (name, unit, part) in parts {
+        let bladders = found.at.first().map_or(0, |shape| part(shape)[0].len());
+        if bladders > 0 {
+            page[format!("{name}_amplitude_{unit}")] = all(part, f64::hypot);
+            page[format!("{name}_phase_rad")] = all(part, |re, im| im.atan2(re));
+        }
+    }
+    page["bladders"] = json!(
+        found
+            .at
+            .first()
+            .map(|shape| shape.pressure[0].len())
+            .filter(|count| *count > 0)
+    );
+    page
 }

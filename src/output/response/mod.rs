@@ -29,15 +29,19 @@ pub const PICTURE: &str = "response.svg";
 pub const NYQUIST: &str = "nyquist.svg";
 
 /// A transfer function with its name, unit and values: real part, imaginary part, errors.
-struct Transfer<'a> {
-    name: String,
-    hz: &'a [f64],
-    unit: &'a str,
-    parts: [&'a [f64]; 3],
+pub struct Transfer<'a> {
+    /// Key of the output, with the harmonic of a sideband.
+    pub name: String,
+    /// Frequencies [Hz].
+    pub hz: &'a [f64],
+    /// Unit of the output.
+    pub unit: &'a str,
+    /// Real part, imaginary part and error at each frequency; no errors if they are unknown.
+    pub parts: [&'a [f64]; 3],
 }
 
 /// Transfer functions of all outputs; the direct one of each precedes its sidebands.
-fn transfers(found: &ResponseRecord) -> Vec<Transfer<'_>> {
+pub fn transfers(found: &ResponseRecord) -> Vec<Transfer<'_>> {
     let mut all = vec![];
     let hz = &found.frequency_hz[..];
     for curve in found.curves() {
@@ -222,13 +226,21 @@ fn derivatives(found: &ResponseRecord, pointer: &str, slopes: &ResponseDerivativ
     text
 }
 
+/// An amplitude in decibel; nothing for 0.
+fn decibel(amplitude: f64) -> String {
+    match amplitude > 0.0 {
+        true => format!("{:.2}", 20.0 * amplitude.log10()),
+        false => String::new(),
+    }
+}
+
 fn at_row(curve: &ResponseCurve, value: &ResponseValue) -> [String; 6] {
     [
         String::new(),
         curve.output.clone(),
         significant(value.frequency_hz, 7),
         significant(value.amplitude, 5),
-        format!("{:.2}", 20.0 * value.amplitude.log10()),
+        decibel(value.amplitude),
         format!("{:.1}", value.phase_deg),
     ]
 }
@@ -248,7 +260,7 @@ fn row(curve: &ResponseCurve, peak: &ResponsePeak) -> [String; 7] {
         if unbounded {
             String::new()
         } else {
-            format!("{:.2}", 20.0 * peak.amplitude.log10())
+            decibel(peak.amplitude)
         },
         format!("{:.1}", peak.phase_deg),
         peak.damping_ratio.map_or(String::new(), |ratio| significant(ratio, 4)),
@@ -270,13 +282,16 @@ fn sidebands(found: &ResponseRecord) -> String {
             significant(hz, 7),
             significant(out.abs(), 7),
             significant(size, 5),
-            format!("{:.2}", 20.0 * size.log10()),
+            decibel(size),
         ])
     };
     let rows = found
         .curves()
         .flat_map(|curve| curve.sidebands.iter().filter_map(move |sideband| row(curve, sideband)));
     let rows: Vec<[String; 7]> = rows.collect();
+    if rows.is_empty() {
+        return String::new();
+    }
     table(
         " | <sideband | harmonic | input [Hz] | output [Hz] | amplitude | [dB]",
         rows,

@@ -44,6 +44,12 @@ impl<'a> Shapes<'a> {
     /// Shape of a vector, normalized to a hundredth of the length or 1 kPa, whichever is reached first. Its phase is zero where
     /// displacements (of pure flow: pressures) are largest.
     pub fn shape(&mut self, x: &[Complex<f64>]) -> ModeShape {
+        let length = self.of.system().model.length;
+        self.along(x).normalised(length)
+    }
+
+    /// Displacements and pressures along a vector of scaled unknowns.
+    pub fn along(&mut self, x: &[Complex<f64>]) -> ModeShape {
         let system = self.of.system();
         let scales = &system.layout.scales;
         let along = |k: usize| Dual {
@@ -66,7 +72,6 @@ impl<'a> Shapes<'a> {
             u3: complex(&mut w.motion.u.iter().map(|u| u.z)),
             pressure: complex(&mut system.pressures_of_fluid(w)),
         }
-        .normalised(system.model.length)
     }
 }
 

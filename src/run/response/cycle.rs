@@ -5,7 +5,7 @@ use std::f64::consts::TAU;
 use nalgebra::Complex;
 
 use super::instant::Instant;
-use super::{columns, find, marked};
+use super::{columns, find_each, marked};
 use crate::case::{self, Case};
 use crate::dae::BeamDae;
 use crate::discrete::System;
@@ -98,10 +98,7 @@ impl DrivenCycle {
             )));
         }
         let columns = columns(&scene.system);
-        let chosen = outputs
-            .iter()
-            .map(|name| find(&columns, name))
-            .collect::<Result<Vec<usize>>>()?;
+        let chosen = find_each(&columns, outputs)?;
         scene.held(&case.name)?;
         let mut cycle = shoot(&scene, None).map_err(fault)?;
         Ok(Self {
@@ -137,7 +134,14 @@ impl DrivenCycle {
             times.push(pair[1]);
         }
         let scene = &self.scene;
-        let mut march = StepMap::new(scene.dae(), scene.method, times).map_err(fault)?;
+        let march = StepMap::new(scene.dae(), scene.method, times);
+        let mut march = march.map_err(|error| {
+            let what = format!(
+                "{}, or a lower --to or fewer --harmonics, which need fewer steps",
+                error.what
+            );
+            fault(StepError { what, ..error })
+        })?;
         let [y, yp] = self.close(&mut march).map_err(fault)?;
         let mut dae = scene.dae();
         let mut instant = Instant::new(&mut dae, self.places.clone(), self.signal.clone(), self.opens());

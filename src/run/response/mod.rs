@@ -14,7 +14,10 @@
 pub mod cycle;
 mod instant;
 pub mod power;
+mod scaled_model;
+pub mod self_test;
 pub mod sensitivity;
+mod shapes;
 pub mod state_space;
 
 use std::collections::BTreeSet;
@@ -222,10 +225,7 @@ impl Endpoints {
             )));
         };
         let columns = columns(&system);
-        let chosen = outputs
-            .iter()
-            .map(|name| find(&columns, name))
-            .collect::<Result<Vec<usize>>>()?;
+        let chosen = find_each(&columns, outputs)?;
         let outputs = chosen.iter().map(|&place| columns[place].clone()).collect();
         Ok(Self {
             remembers,
@@ -296,6 +296,18 @@ fn is_linear(column: &HistoryColumn) -> bool {
     // the volume through a port is an integral
     let integral = column.name.starts_with("port_") && column.unit == "m^3";
     !matches!(column.unit, "W" | "J") && !integral
+}
+
+/// Indices of outputs by their names, each once: a name with its unit is another spelling of the same output.
+fn find_each(columns: &[HistoryColumn], names: &[String]) -> Result<Vec<usize>> {
+    let mut chosen = vec![];
+    for name in names {
+        let place = find(columns, name)?;
+        if !chosen.contains(&place) {
+            chosen.push(place);
+        }
+    }
+    Ok(chosen)
 }
 
 /// Index of an output by its name, with or without its unit.

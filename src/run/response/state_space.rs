@@ -13,6 +13,7 @@
 use super::LinearResponse;
 use crate::error::Result;
 use crate::sparse::Lu;
+use crate::spectral::Pencil;
 
 /// Fraction of the largest entry of an output's row below which an entry is rounding error.
 const NOTHING: f64 = 1e-9;
@@ -66,9 +67,7 @@ impl StateSpace {
         let about = &response.about;
         let pencil = about.pencil();
         let n = about.y.len();
-        let dynamic: Vec<bool> = (0..n)
-            .map(|column| pencil.pattern.column(column).any(|e| pencil.b[e] != 0.0))
-            .collect();
+        let dynamic = dynamic(&pencil);
         let mut values = vec![0.0; pencil.a.len()];
         for (column, dynamic) in dynamic.iter().enumerate() {
             let from = if *dynamic { &pencil.b } else { &pencil.a };
@@ -168,4 +167,10 @@ impl StateSpace {
             self.x0.push(if rate == 0 { self.u0 } else { 0.0 });
         }
     }
+}
+
+/// True for each unknown whose rate appears: those of the states, in their order.
+pub(super) fn dynamic(pencil: &Pencil) -> Vec<bool> {
+    let appears = |column: usize| pencil.pattern.column(column).any(|entry| pencil.b[entry] != 0.0);
+    (0..pencil.pattern.columns()).map(appears).collect()
 }

@@ -64,6 +64,9 @@ pub fn reduce(response: &LinearResponse, band: [f64; 2], found: &mut Poles, aske
     }
     let reference = ApproximatedResponse::new(response, band, &modes, (REFERENCE * asked).max(LEAST))?;
     found.complete(response, &reference, band);
+    if reference.medians.iter().all(|median| *median == 0.0) {
+        return Err(response.no_model("the outputs do not respond to the input"));
+    }
     let modes: Vec<C> = found.poles.iter().map(|pole| pole.s).collect();
     let data = dense(&reference, band, &modes);
     let permitted = asked - reference.error;
@@ -179,7 +182,11 @@ impl PartialFractions {
         let mut values = vec![vec![C::default(); medians.len()]; rows.len()];
         for (p, median) in medians.iter().enumerate() {
             let rest = gain.map_or(C::default(), |gain| gain[p]);
-            let weight = |k: usize| 1.0 / data.values[k][p].norm().max(*median);
+            // an output that does not respond has no weight
+            let weight = |k: usize| match data.values[k][p].norm().max(*median) {
+                0.0 => 0.0,
+                size => 1.0 / size,
+            };
             let part = |i: usize, x: C| if i.is_multiple_of(2) { x.re } else { x.im };
             let mut matrix = DMatrix::from_fn(2 * rows.len(), columns, |i, j| weight(i / 2) * part(i, rows[i / 2][j]));
             let scales: Vec<f64> = matrix
@@ -192,10 +199,14 @@ impl PartialFractions {
             let mut right = DVector::from_fn(2 * rows.len(), |i, _| {
                 weight(i / 2) * part(i, data.values[i / 2][p] - rest)
             });
-            let qr = matrix.qr();
-            qr.q_tr_mul(&mut right);
-            let solved = qr.r().svd(true, true).solve(&right.rows(0, columns), 1e-13).ok();
-            let scaled = solved.unwrap_or_else(|| DVector::from_element(columns, f64::NAN));
+            let solved = (columns > 0).then(|| {
+                let qr = matrix.qr();
+                qr.q_tr_mul(&mut right);
+                qr.r().svd(true, true).solve(&right.rows(0, columns), 1e-13).ok()
+            });
+            let scaled = solved
+                .flatten()
+                .unwrap_or_else(|| DVector::from_element(columns, f64::NAN));
             let own: Vec<f64> = scaled.iter().zip(&scales).map(|(x, scale)| x / scale).collect();
             for (row, values) in rows.iter().zip(&mut values) {
                 values[p] = rest + row.iter().zip(&own).map(|(f, x)| f * *x).sum::<C>();

@@ -345,3 +345,35 @@ fn histories_have_error_bands() {
     );
     assert!(read("errors.csv").is_err() && !read("history.svg").expect("a picture").contains("fill-opacity"));
 }
+
+/// Goal: the page of a response states the values at the pointer, and moves the beam at the peak that is clicked.
+#[test]
+fn a_response_is_read_at_the_pointer() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let asked = [
+        "response",
+        "cases/wiring-3.json",
+        "--input",
+        "/ends/root/clamped/u3_m",
+        "--output",
+        "tip_u3",
+        "--frequency",
+        "5",
+        "--to",
+        "110",
+    ];
+    let page = made(folder.path(), &asked);
+    let mut browser = Browser::start();
+    sound(&mut browser, &page, &["answer", "shapes", "table", "scene", "case"]);
+    let chosen = "document.querySelector('#frequency').selectedOptions[0].text";
+    assert_eq!(browser.text(chosen), "5.0000 Hz");
+    browser.click(".u-over", (0.97, 0.5));
+    assert_ne!(browser.text(chosen), "5.0000 Hz", "a click chooses nothing");
+    let figures = browser.text("document.querySelector('.u-legend').textContent");
+    assert!(figures.contains("dB ±") && figures.contains("tip_u3_m"), "{figures}");
+    assert!(
+        browser
+            .text("document.querySelector('#shapes .figure .caption').textContent")
+            .contains("per unit of the input: largest displacement")
+    );
+}

@@ -1,9 +1,12 @@
-// Columns over time: chosen by buttons, zoomed together, read at the cursor.
+// Columns over time or frequency: chosen by buttons, zoomed together, read at the cursor.
 
-/** Panels over one time axis that zoom and read together, marked at the time of a clock, if any; `fill` adds them. */
-function makePanels(times, clock, fill) {
+const TIME = { label: "time [s]", name: "t [s]" };
+const FREQUENCY = { label: "frequency [Hz]", name: "f [Hz]", logarithmic: true };
+
+/** Panels over one axis of times, or of others, that zoom and read together, marked at the time of a clock, if any; `fill` adds them. */
+function makePanels(times, clock, fill, axis = TIME) {
   const slot = el("div");
-  const group = { key: `g${(makePanels.count = (makePanels.count || 0) + 1)}`, slot, plots: [], range: null, full: [times[0], times[times.length - 1]] };
+  const group = { axis, key: `g${(makePanels.count = (makePanels.count || 0) + 1)}`, slot, plots: [], range: null, full: [times[0], times[times.length - 1]] };
   const time = () => (clock ? clock.time : times[0]);
   group.zoom = (low, high) => {
     const [a, b] = group.full;
@@ -50,20 +53,24 @@ function onePanel(host, group, times, series, height, title) {
   const holder = el("div", { class: "panel" });
   host.append(holder);
   const shown = (u, v) => (v === null || v === undefined ? "–" : significant(v, 5));
+  const { label: xlabel, name, logarithmic } = group.axis;
+  const x = { time: false, min: group.range?.[0], max: group.range?.[1], ...(logarithmic ? { distr: 3, range: (u, low, high) => [low, high] } : {}) };
+  const decades = (low, high) => Array.from({ length: 40 }, (_, k) => [1, 2, 5].map((m) => m * 10 ** (k - 20))).flat().filter((v) => v >= low * 0.999 && v <= high * 1.001);
+  const round = (u, k, low, high) => (high > 1e4 * low ? decades(low, high).filter((v) => Math.log10(v) % 1 === 0) : high > 5 * low ? decades(low, high) : ticks(low, high, 6));
   const minus = (u, all) => tickTexts(all, 1);
   // what is too long to stand along the axis stands in the legend below
   const heading = 6.6 * (title.length + unit.length + 3) > height - 50 ? "" : `${title} `;
   const ylabel = `${heading}${unit ? `[${unit}]` : ""}`.trim() || title.slice(0, Math.floor((height - 50) / 6.6));
   const options = {
     width: Math.max(holder.clientWidth, 240), height, cursor: { sync: { key: group.key }, drag: { x: true, y: false, uni: 20 }, points: { size: 6 } },
-    legend: { live: true, markers: { dash: (u, k) => (u.series[k].dash ? "dashed" : "solid") } }, scales: { x: { time: false, min: group.range?.[0], max: group.range?.[1] }, y: { range: (u, low, high) => bandRange(u, banded, factor, low, high) } },
-    axes: [{ ...axis, values: minus, label: "time [s]", labelSize: 18, labelFont: axis.font, size: 32 }, { ...axis, values: minus, size: 62, label: ylabel, labelSize: 18, labelFont: axis.font }],
-    series: [{ label: "t [s]", value: shown }, ...series.map((s) => ({ label: `${s.label}${unit ? ` [${unit}]` : ""}`, stroke: s.colour, width: 1.6, value: shown, points: { show: false }, dash: s.dash }))],
+    legend: { live: true, markers: { dash: (u, k) => (u.series[k].dash ? "dashed" : "solid") } }, scales: { x, y: { range: (u, low, high) => bandRange(u, banded, factor, low, high) } },
+    axes: [{ ...axis, ...(logarithmic ? { splits: round, filter: (u, all) => all, values: (u, all) => all.map((v) => shortest(Number(v.toPrecision(3)))) } : { values: minus }), label: xlabel, labelSize: 18, labelFont: axis.font, size: 32 }, { ...axis, values: minus, size: 62, label: ylabel, labelSize: 18, labelFont: axis.font }],
+    series: [{ label: name, value: shown }, ...series.map((s) => ({ label: `${s.label}${unit && !s.words ? ` [${unit}]` : ""}`, stroke: s.colour, width: 1.6, value: s.words ? (u, v, k, at) => (at === null ? "–" : s.words(at)) : shown, points: { show: false }, dash: s.dash }))],
     hooks: { drawAxes: [(u) => banded.forEach((s) => paintBand(u, times, s, factor))], setScale: [(u, key) => key === "x" && !group.busy && group.plots.some((p) => p.plot === u) && group.zoom(u.scales.x.min, u.scales.x.max)] },
   };
   const plot = new uPlot(options, [Array.from(times), ...series.map((s) => clean(s.values))], holder);
   plot.ctx.canvas.setAttribute("role", "img");
-  plot.ctx.canvas.setAttribute("aria-label", `${series.map((s) => s.label).join(", ")} over time`);
+  plot.ctx.canvas.setAttribute("aria-label", `${series.map((s) => s.label).join(", ")} over ${xlabel.replace(/ \[.*/, "")}`);
   const mark = el("div", { class: "nowline" });
   plot.over.append(mark);
   plot.over.addEventListener("dblclick", () => group.zoom(...group.full));

@@ -8,7 +8,7 @@ showHead(main);
 showWarnings(main);
 showTiles(main);
 showRemarks(main);
-const SHOWN = { run: showRun, equilibrium: showPath, modes: showModes };
+const SHOWN = { run: showRun, equilibrium: showPath, modes: showModes, response: showResponse };
 (SHOWN[data.kind] || showMany)();
 showUncertainty();
 showCell();

@@ -109,81 +109,147 @@ function showEvents() {
   section("derivatives", "Sensitivities: change of the figure per 1 %", null).append(tableCard({ headings: ["number of the case", "quantity", "derivative", "change for 1 % more"], rows, about: "Derivatives of the last state." }));
 }
 
-/** Shapes of small motions, moving. */
+/** Shapes of small motions, moving. `one` has the name of a shape, `texts` of the list (null: not in it), the `first` shape, and of each its words and if it oscillates. Returns a function that chooses a shape. */
+function movingShapes(body, shapes, one) {
+  const get = (name) => floats(shapes[name]);
+  const theta = get("theta_m");
+  // Without the case only the line of the beam is known.
+  const scene = data.scene || { length: theta.at(-1), height: 0.06 * theta.at(-1), ends: [], loads: [], bladders: null };
+  const n = theta.length;
+  const layout = layOut(scene);
+  const [a1, f1, a3, f3, ap, fp] = ["u1_amplitude_m", "u1_phase_rad", "u3_amplitude_m", "u3_phase_rad", "pressure_amplitude_pa", "pressure_phase_rad"].map(get);
+  const select = el("select", { "aria-label": one.name, id: one.name.toLowerCase() }, one.texts.map((text, k) => text && el("option", { value: k, text, selected: k === one.first })));
+  const canvas = el("canvas", { role: "img", "aria-label": `The moving shape: ${one.name.toLowerCase()}` });
+  const words = el("p", { class: "caption" });
+  let phase = 0;
+  let playing = !calm.matches;
+  const button = showPlaying(el("button", { type: "button", class: "main" }), playing);
+  const slider = el("input", { type: "range", min: 0, max: 100, value: 0, "aria-label": "Phase", style: "flex:1 1 160px", "data-keys": "" });
+  body.append(figure(null, null, el("div", { class: "controls" }, el("label", {}, one.name, select), button, slider), canvas, words));
+  const bounds = { x0: -0.02 * scene.length, x1: 1.05 * scene.length, y0: -0.13 * scene.length - 0.6 * scene.height, y1: 0.13 * scene.length + 0.6 * scene.height };
+  const paint = () => {
+    const k = Number(select.value);
+    const part = (values, count) => values.subarray(k * count, (k + 1) * count);
+    const size = Math.max(largest(part(a1, n)), largest(part(a3, n)), 1e-300);
+    const factor = (0.11 * scene.length) / size;
+    const oscillates = one.oscillates(k);
+    // Modes that decay without oscillation are also drawn oscillating, to show their shape.
+    const at = (a, f, i) => a[i] * Math.cos(2 * Math.PI * phase + (oscillates ? f[i] : Math.cos(f[i]) < 0 ? Math.PI : 0));
+    const [u1, u3] = [new Float64Array(n), new Float64Array(n)];
+    for (let i = 0; i < n; i++) {
+      u1[i] = at(part(a1, n), part(f1, n), i);
+      u3[i] = at(part(a3, n), part(f3, n), i);
+    }
+    const view = viewOf(Math.max(canvas.clientWidth, 260), bounds, 420);
+    const per = shapes.bladders || 0;
+    const most = ap ? largest(part(ap, per)) : 0;
+    const pressure = most > 0 ? (b) => at(part(ap, per), part(fp, per), b) / most : null;
+    painted(canvas, view.height, (ctx) => paintBeam(ctx, view, curveOf(theta, u1, u3, { across: factor, along: factor }), scene, layout, pressure));
+    slider.value = Math.round(100 * phase);
+    words.textContent = `${one.words(k, size, most)}${pressure ? " Bladders are coloured by their pressure: red and blue are opposite." : ""}`;
+  };
+  let before = null;
+  const frame = (now) => {
+    if (playing) {
+      if (before !== null) phase = (phase + Math.min(now - before, 100) / 2400) % 1;
+      before = now;
+      paint();
+      requestAnimationFrame(frame);
+    }
+  };
+  const play = (on) => {
+    playing = on;
+    before = null;
+    showPlaying(button, on);
+    if (on) requestAnimationFrame(frame);
+  };
+  const chosen = () => (one.follow?.(Number(select.value)), paint());
+  button.addEventListener("click", () => play(!playing));
+  select.addEventListener("change", chosen);
+  slider.addEventListener("input", () => (play(false), (phase = Number(slider.value) / 100), paint()));
+  document.addEventListener("keydown", (event) => {
+    if (event.key !== " " || event.target.closest("button, select, summary, a, input, [data-keys]")) return;
+    event.preventDefault();
+    play(!playing);
+  });
+  drawn(paint);
+  if (playing) requestAnimationFrame(frame);
+  return (k) => ((select.value = k), chosen());
+}
+
+/** Shapes of modes. */
 function showModes() {
   const { shapes } = data;
   const modes = shapes ? data.modes.slice(0, shapes.most) : data.modes;
   if (shapes && modes?.length) {
-    const get = (name) => floats(shapes[name]);
-    const theta = get("theta_m");
-    // Without the case only the line of the beam is known.
-    const scene = data.scene || { length: theta.at(-1), height: 0.06 * theta.at(-1), ends: [], loads: [], bladders: null };
-    const n = theta.length;
-    const layout = layOut(scene);
-    const [a1, f1, a3, f3, ap, fp] = ["u1_amplitude_m", "u1_phase_rad", "u3_amplitude_m", "u3_phase_rad", "pressure_amplitude_pa", "pressure_phase_rad"].map(get);
-    const name = (m, k) => `${k + 1} · ${m.kind}${m.frequency_hz ? ` ${quantity(m.frequency_hz, "Hz", 4)}` : m.time_s ? `, ${quantity(m.time_s, "s")}` : ""}`;
-    const first = Math.max(modes.findIndex((m) => m.kind === "oscillation" || m.kind === "flutter"), 0);
     const body = section("shapes", "Mode shapes", "Every small motion is a sum of these. Amplitudes are drawn as large as can be seen; what counts is the shape, and where the pressure is.");
-    const select = el("select", { "aria-label": "Mode", id: "mode" }, modes.map((m, k) => el("option", { value: k, text: name(m, k), selected: k === first })).filter((_, k) => !["rigid", "volume"].includes(modes[k].kind)));
-    const canvas = el("canvas", { role: "img", "aria-label": "The moving shape of the mode" });
-    const words = el("p", { class: "caption" });
-    let phase = 0;
-    let playing = !calm.matches;
-    const button = showPlaying(el("button", { type: "button", class: "main" }), playing);
-    const slider = el("input", { type: "range", min: 0, max: 100, value: 0, "aria-label": "Phase", style: "flex:1 1 160px", "data-keys": "" });
-    body.append(figure(null, null, el("div", { class: "controls" }, el("label", {}, "Mode", select), button, slider), canvas, words));
-    const bounds = { x0: -0.02 * scene.length, x1: 1.05 * scene.length, y0: -0.13 * scene.length - 0.6 * scene.height, y1: 0.13 * scene.length + 0.6 * scene.height };
-    const paint = () => {
-      const k = Number(select.value);
-      const part = (values, count) => values.subarray(k * count, (k + 1) * count);
-      const size = Math.max(largest(part(a1, n)), largest(part(a3, n)), 1e-300);
-      const factor = (0.11 * scene.length) / size;
-      const oscillates = Boolean(modes[k].frequency_hz);
-      // Modes that decay without oscillation are also drawn oscillating, to show their shape.
-      const at = (a, f, i) => a[i] * Math.cos(2 * Math.PI * phase + (oscillates ? f[i] : Math.cos(f[i]) < 0 ? Math.PI : 0));
-      const [u1, u3] = [new Float64Array(n), new Float64Array(n)];
-      for (let i = 0; i < n; i++) {
-        u1[i] = at(part(a1, n), part(f1, n), i);
-        u3[i] = at(part(a3, n), part(f3, n), i);
-      }
-      const view = viewOf(Math.max(canvas.clientWidth, 260), bounds, 420);
-      const per = shapes.bladders || 0;
-      const most = ap ? largest(part(ap, per)) : 0;
-      const pressure = most > 0 ? (b) => at(part(ap, per), part(fp, per), b) / most : null;
-      painted(canvas, view.height, (ctx) => paintBeam(ctx, view, curveOf(theta, u1, u3, { across: factor, along: factor }), scene, layout, pressure));
-      slider.value = Math.round(100 * phase);
-      const m = modes[k];
-      const facts = [m.frequency_hz ? `swings at ${quantity(m.frequency_hz, "Hz", 5)}` : "does not swing", m.damping_ratio ? `damping ratio ${significant(m.damping_ratio, 3)}` : null, m.growth_per_s < 0 ? `dies away within ${quantity(m.time_s, "s")}` : m.growth_per_s > 0 ? `grows at ${significant(m.growth_per_s, 3)} per second` : null].filter(Boolean);
-      words.textContent = `Mode ${k + 1} ${facts.join(", ")}.${pressure ? " Bladders are coloured by their pressure in this mode: red and blue are opposite." : ""}`;
-    };
-    let before = null;
-    const frame = (now) => {
-      if (playing) {
-        if (before !== null) phase = (phase + Math.min(now - before, 100) / 2400) % 1;
-        before = now;
-        paint();
-        requestAnimationFrame(frame);
-      }
-    };
-    const play = (on) => {
-      playing = on;
-      before = null;
-      showPlaying(button, on);
-      if (on) requestAnimationFrame(frame);
-    };
-    button.addEventListener("click", () => play(!playing));
-    select.addEventListener("change", paint);
-    slider.addEventListener("input", () => (play(false), (phase = Number(slider.value) / 100), paint()));
-    document.addEventListener("keydown", (event) => {
-      if (event.key !== " " || event.target.closest("button, select, summary, a, input, [data-keys]")) return;
-      event.preventDefault();
-      play(!playing);
+    const name = (m, k) => `${k + 1} · ${m.kind}${m.frequency_hz ? ` ${quantity(m.frequency_hz, "Hz", 4)}` : m.time_s ? `, ${quantity(m.time_s, "s")}` : ""}`;
+    const facts = (m) => [m.frequency_hz ? `swings at ${quantity(m.frequency_hz, "Hz", 5)}` : "does not swing", m.damping_ratio ? `damping ratio ${significant(m.damping_ratio, 3)}` : null, m.growth_per_s < 0 ? `dies away within ${quantity(m.time_s, "s")}` : m.growth_per_s > 0 ? `grows at ${significant(m.growth_per_s, 3)} per second` : null].filter(Boolean);
+    movingShapes(body, shapes, {
+      name: "Mode",
+      texts: modes.map((m, k) => (["rigid", "volume"].includes(m.kind) ? null : name(m, k))),
+      first: Math.max(modes.findIndex((m) => m.kind === "oscillation" || m.kind === "flutter"), 0),
+      oscillates: (k) => Boolean(modes[k].frequency_hz),
+      words: (k) => `Mode ${k + 1} ${facts(modes[k]).join(", ")}.`,
     });
-    drawn(paint);
-    if (playing) requestAnimationFrame(frame);
   }
   if (data.passivity) document.getElementById("main").append(figure("Passivity of the coupling", data.passivity));
   if (data.table) section("table", "Every mode", null).append(tableCard({ ...data.table, title: null, name: data.table.title, about: "Undrained: the same shape with every bladder sealed. Drained: with one pressure in each network. The growth rate is negative where the motion dies away." }));
   if (data.picture) section("picture", "All shapes at once", null).append(pictureCard({ picture: data.picture, title: null, about: "Displacement along the beam of every mode, with the pressures of the bladders." }));
   if (data.scene) showScene();
+}
+
+/** Amplitude and phase over frequency, read at the pointer, and the motion of the beam at chosen frequencies. */
+function showResponse() {
+  const { curves, shapes } = data;
+  const hz = floats(curves.hz);
+  const clock = { time: hz[0], ticks: [], onTick: (act) => clock.ticks.push(act) };
+  if (hz.length > 1) {
+    const all = curves.all.map((c) => ({ ...c, real: floats(c.real), imag: floats(c.imag), error: floats(c.error) }));
+    const size = (c, k) => Math.hypot(c.real[k], c.imag[k]);
+    const decibel = (x) => (x > 0 ? 20 * Math.log10(x) : NaN);
+    const degrees = (c, k) => (Math.atan2(c.imag[k], c.real[k]) * 180) / Math.PI;
+    const error = (c, k) => (c.error?.length && size(c, k) > 0 ? ` ± ${significant((100 * c.error[k]) / size(c, k), 2)} %` : "");
+    const words = (c) => (k) => (size(c, k) > 0 ? `${significant(size(c, k), 4)} = ${significant(decibel(size(c, k)), 4)} dB${error(c, k)}` : "0");
+    const unwound = (c) => {
+      let turns = 0;
+      return Float64Array.from(hz, (_, k) => {
+        const step = k ? degrees(c, k) - degrees(c, k - 1) : 0;
+        turns -= Math.round(step / 360);
+        return size(c, k) > 0 ? degrees(c, k) + 360 * turns : NaN;
+      });
+    };
+    const choose = (plot) => plot.over.addEventListener("click", (event) => {
+      if (!chooseShape) return;
+      const x = event.clientX - plot.over.getBoundingClientRect().left;
+      const far = shapes.hz.map((f) => Math.abs(plot.valToPos(f, "x") - x));
+      chooseShape(far.indexOf(Math.min(...far)));
+    });
+    const group = makePanels(hz, clock, () => {
+      const series = (values, text) => all.map((c, k) => ({ label: c.label, unit: "", values: values(c), words: text(c), colour: named(k), dash: DASHES[Math.floor(k / 8) % DASHES.length] }));
+      group.add(series((c) => Float64Array.from(hz, (_, k) => decibel(size(c, k))), words), 280, "amplitude [dB]");
+      group.add(series(unwound, (c) => (k) => (size(c, k) > 0 ? `${significant(degrees(c, k), 4)}°` : "–")), 170, "phase [°]");
+      for (const { plot } of group.plots) choose(plot);
+    }, FREQUENCY);
+    const click = shapes ? " A click chooses the nearest frequency whose motion is shown below." : "";
+    const card = figure("Amplitude and phase", `Output over input (${curves.input}), in SI units. Below each picture stand the figures at the pointer, with the estimated error. Drag across to look closer; a double click shows the whole band.${click}`, group.slot);
+    answerSection().append(card);
+    group.begin();
+  }
+  let chooseShape = null;
+  if (shapes) {
+    const body = section("shapes", "Motion of the beam", "The shape of the steady motion at peaks and at the frequencies of --frequency, over one cycle of the input. Amplitudes are drawn as large as can be seen.");
+    const follow = (k) => ((clock.time = shapes.hz[k]), clock.ticks.forEach((act) => act()));
+    const unit = (x, name) => `${significant(x, 4)} ${name}`;
+    chooseShape = movingShapes(body, shapes, {
+      name: "Frequency",
+      texts: shapes.hz.map((f) => quantity(f, "Hz", 5)),
+      first: 0,
+      oscillates: () => true,
+      words: (k, moved, pressed) => `At ${quantity(shapes.hz[k], "Hz", 5)}, per unit of the input: largest displacement ${unit(moved, "m")}${pressed > 0 ? `, largest pressure ${unit(pressed, "Pa")}` : ""}. Phase 0 is that of the largest input.`,
+      follow,
+    });
+    follow(0);
+  }
+  showMany();
 }
