@@ -149,7 +149,7 @@ pub fn write(folder: &mut ResultFolder, found: &BandsRecord) -> Result<Vec<PathB
 }
 
 /// Largest attenuation that is drawn [dB per cell].
-const DRAWN: f64 = 30.0;
+pub const DRAWN: f64 = 30.0;
 
 fn colour(motion: WaveMotion) -> Colour {
     PALETTE[match motion {

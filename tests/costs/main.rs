@@ -5,6 +5,7 @@
 mod allocations;
 #[path = "../common/chance.rs"]
 mod chance;
+mod responses;
 
 use std::fs;
 use std::path::Path;

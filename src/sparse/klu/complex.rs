@@ -8,14 +8,10 @@ use super::{Analysis, KluError};
 use crate::sparse::Pattern;
 use crate::sparse::c;
 
-/// Smallest growth of the factors with old pivots, over that with fresh ones.
-const GROWTH: f64 = 0.01;
-
-/// LU factors of complex matrices with a common pattern. Old pivots are reused as long as they are good.
+/// LU factors of complex matrices with a common pattern. Pivots are chosen anew for every matrix: old ones cost digits.
 pub struct ComplexKlu {
     analysis: Analysis,
     numeric: *mut c::klu_l_numeric,
-    growth_when_fresh: f64,
 }
 
 // SAFETY: memory allocated by KLU belongs to no thread, and is accessible only through this value.
@@ -27,7 +23,6 @@ impl ComplexKlu {
         Ok(Self {
             analysis: Analysis::new(pattern)?,
             numeric: ptr::null_mut(),
-            growth_when_fresh: 1.0,
         })
     }
 
@@ -36,9 +31,6 @@ impl ComplexKlu {
     /// After an error there are no factors. Panics if the number of values differs from that of the pattern.
     pub fn factor(&mut self, values: &[Complex<f64>]) -> Result<(), KluError> {
         assert_eq!(values.len(), self.analysis.rows.len(), "values of another pattern");
-        if !self.numeric.is_null() && self.refactor(values) {
-            return Ok(());
-        }
         self.free_numeric();
         let a = &mut self.analysis;
         // SAFETY: pattern and symbolic belong together; values has the pattern's length; each value is a pair of
@@ -58,44 +50,7 @@ impl ComplexKlu {
             self.free_numeric();
             return Err(fault);
         }
-        self.growth_when_fresh = self.growth(values);
         Ok(())
-    }
-
-    /// Factors with the old pivots; returns false if they are bad.
-    fn refactor(&mut self, values: &[Complex<f64>]) -> bool {
-        let a = &mut self.analysis;
-        // SAFETY: pattern, symbolic and numeric belong together; values has the pattern's length; KLU only reads them.
-        let regular = unsafe {
-            c::klu_zl_refactor(
-                a.starts.as_mut_ptr(),
-                a.rows.as_mut_ptr(),
-                values.as_ptr().cast::<f64>().cast_mut(),
-                a.symbolic,
-                self.numeric,
-                &mut *a.common,
-            ) != 0
-                && a.common.status == i64::from(c::KLU_OK)
-                && c::klu_zl_rcond(a.symbolic, self.numeric, &mut *a.common) != 0
-        };
-        regular && self.analysis.common.rcond > 0.0 && self.growth(values) >= GROWTH * self.growth_when_fresh
-    }
-
-    /// `min_j max_i |aᵢⱼ| / max_i |uᵢⱼ|` of the present factors: 1 is good, ε is useless.
-    fn growth(&mut self, values: &[Complex<f64>]) -> f64 {
-        let a = &mut self.analysis;
-        // SAFETY: as in `refactor`.
-        unsafe {
-            c::klu_zl_rgrowth(
-                a.starts.as_mut_ptr(),
-                a.rows.as_mut_ptr(),
-                values.as_ptr().cast::<f64>().cast_mut(),
-                a.symbolic,
-                self.numeric,
-                &mut *a.common,
-            );
-        }
-        a.common.rgrowth
     }
 
     /// Replaces `b` by the solution of `A x = b`; returns false without factors. Panics if `b` has a wrong length.

@@ -377,3 +377,21 @@ fn a_response_is_read_at_the_pointer() {
             .contains("per unit of the input: largest displacement")
     );
 }
+
+/// Goal: the page of bands states the wave at a mark.
+#[test]
+fn a_wave_is_read_at_its_mark() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let asked = ["bands", "cases/metamaterial.json", "--to", "60", "--points", "20"];
+    let page = made(folder.path(), &asked);
+    let mut browser = Browser::start();
+    sound(&mut browser, &page, &["answer", "table", "scene", "case"]);
+    let readout = "document.querySelector('#answer .readout').textContent";
+    browser.eval("document.querySelector('#answer .chart').focus()");
+    browser.press("ArrowRight");
+    let words = browser.text(readout);
+    assert!(
+        words.contains("bending at 1.0000 Hz: phase") && words.contains("dB per cell"),
+        "{words}"
+    );
+}

@@ -101,11 +101,6 @@ fn what_makes_no_sense_is_refused() {
         ),
         (vec!["--vary", "/beam/length_m=0.1", "--jobs", "0"], 2, "from 1 to 1024"),
         (
-            vec!["--vary", "/beam/length_m=0.1", "--command", "periodic"],
-            2,
-            "period",
-        ),
-        (
             vec!["--vary", "/beam/length_m=0.1", "--command", "modes", "--keep-folders"],
             2,
             "--keep-cases",
@@ -120,6 +115,14 @@ fn what_makes_no_sense_is_refused() {
         );
     }
     assert!(!Path::new(&out).exists());
+    // without a signal that repeats, each design is searched for a self-oscillation
+    let said = swept(&out, &["--vary", "/beam/length_m=0.1", "--command", "periodic"]);
+    assert!(
+        said.code == 4 && said.out.contains("no self-oscillation was found"),
+        "{} {}",
+        said.code,
+        said.out
+    );
 }
 
 /// Goal: a folder of another sweep, or with something else, is left as it is until it is said otherwise.

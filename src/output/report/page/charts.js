@@ -21,12 +21,13 @@ function logMarks(low, high, count, unit) {
   return all.map((v) => [v, text(10 ** v)]);
 }
 
-/** Marks over two logarithmic axes; those of a series are switched by its button, the nearest is read out. */
+/** Marks over two axes, logarithmic unless `linear`; those of a series are switched by its button, the nearest is read out. */
 function showMarks(part) {
   const off = new Set();
   const slot = el("div", { class: "chart", tabindex: "0", role: "group", "data-keys": "" });
   const readout = el("div", { class: "readout dim", "aria-live": "polite", text: "Point at a mark, or go through them with the arrow keys." });
-  const points = () => part.series.flatMap((s, k) => (off.has(k) ? [] : s.points.map(([x, y, words]) => ({ x: Math.log10(x), y: Math.log10(y), words, series: k }))));
+  const place = part.linear ? (v) => v : Math.log10;
+  const points = () => part.series.flatMap((s, k) => (off.has(k) ? [] : s.points.map(([x, y, words]) => ({ x: place(x), y: place(y), words, series: k }))));
   let [plot, ring, at] = [null, null, -1];
   const mark = (k) => {
     const all = points();
@@ -43,19 +44,23 @@ function showMarks(part) {
     const all = points();
     const range = (values) => {
       const [low, high] = values.length ? extent(values) : [-1, 1];
-      const room = Math.max(0.06 * (high - low), 0.12);
+      const room = part.linear ? 0.03 * (high - low || 1) : Math.max(0.06 * (high - low), 0.12);
       return [low - room, high + room];
     };
     const [x0, x1] = range(all.map((p) => p.x));
     const [y0, y1] = range(all.map((p) => p.y));
     const width = Math.max(slot.clientWidth, 240);
     const height = Math.min(440, Math.max(280, 0.62 * width));
-    const axis = (a, low, high, count) => ({ low, high, unit: "", name: a.name, marks: logMarks(low, high, count, a.unit === "1" ? "" : a.unit) });
+    const axis = (a, low, high, count) => {
+      const unit = a.unit === "1" ? "" : a.unit;
+      return part.linear ? { low, high, unit, name: a.name } : { low, high, unit: "", name: a.name, marks: logMarks(low, high, count, unit) };
+    };
     const label = `${part.title}: ${part.y.name} over ${part.x.name}, ${all.length} marks`;
     slot.setAttribute("aria-label", `${label}. Arrow keys go through them.`);
     plot = chart(width, height, axis(part.x, x0, x1, Math.floor(width / 90)), axis(part.y, y0, y1, 6), label);
     const limit = part.limit && part.limit.at > 0 ? Math.min(Math.log10(part.limit.at), x1) : -Infinity;
     if (limit > x0) plot.area.append(svg("rect", { x: plot.px(x0), y: 0, width: plot.px(limit) - plot.px(x0), height, style: `fill:${css("--track")}` }));
+    for (const [from, to] of part.shades || []) plot.area.append(svg("rect", { x: plot.px(from), y: 0, width: plot.px(to) - plot.px(from), height, style: `fill:${css("--track")}` }));
     const path = (list, style, dash) => plot.area.append(svg("path", { d: linePath(list.length, (i) => [plot.px(list[i].x), plot.py(list[i].y)]), style: `fill:none;${style}`, "stroke-dasharray": dash || null }));
     const front = (part.front || []).map(([x, y]) => ({ x: Math.log10(x), y: Math.log10(y) }));
     path(front, `stroke:${css("--line")};stroke-width:9;stroke-linejoin:round`);
@@ -63,6 +68,7 @@ function showMarks(part) {
       if (off.has(k)) return;
       const own = all.filter((p) => p.series === k);
       const colour = named(s.colour);
+      if (part.dots) return own.forEach((p) => plot.area.append(svg("circle", { cx: plot.px(p.x), cy: plot.py(p.y), r: 1.8, style: `fill:${colour}` })));
       path(own, `stroke:${colour};stroke-width:1.5`, s.dash);
       own.forEach((p, i) => plot.area.append(svg("circle", { cx: plot.px(p.x), cy: plot.py(p.y), r: 4.5, style: `stroke:${colour};stroke-width:2;fill:${s.points[i][3] ? colour : css("--card")}` })));
     });
