@@ -142,7 +142,7 @@ fn write(folders: &[PathBuf]) -> Result<(), String> {
         .header_contents("needed.h", "#include <klu.h>\n#include <sundials/sundials_version.h>\n")
         .clang_args(folders.iter().map(|folder| format!("-I{}", folder.display())))
         .allowlist_function(
-            "klu_(l_(defaults|analyze|condest|free_symbolic)|z?l_(factor|refactor|rgrowth|rcond|solve|free_numeric)|zl_tsolve)",
+            "klu_(l_(defaults|analyze|refactor|rgrowth|rcond|condest|free_symbolic)|z?l_(factor|solve|free_numeric)|zl_tsolve)",
         )
         .allowlist_function("SUNDIALSGetVersionNumber")
         .allowlist_var("KLU_(OK|SINGULAR|OUT_OF_MEMORY|INVALID|TOO_LARGE)|SUITESPARSE_(MAIN|SUB|SUBSUB)_VERSION")
