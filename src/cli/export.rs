@@ -159,6 +159,12 @@ fn state_space(asked: &ExportArguments, file: &Path, input: &str) -> Result<Exit
             file.display()
         )));
     }
+    if file.exists() && !replaceable(file) {
+        return Err(Error::Usage(format!(
+            "--state-space {}: the file contains something else than a state-space model and is not overwritten; name another file",
+            file.display()
+        )));
+    }
     if let Some(error) = asked.error {
         check_band([asked.from, asked.to], 2, asked.from < asked.to, "below")?;
         if !(MIN_ERROR..1.0).contains(&error) {
@@ -253,6 +259,17 @@ fn state_space(asked: &ExportArguments, file: &Path, input: &str) -> Result<Exit
     Ok(ExitCode::SUCCESS)
 }
 
+/// True if a file may be overwritten: a JSON file contains matrices, so that no case and no result is lost.
+fn replaceable(file: &Path) -> bool {
+    let json = file.extension().is_some_and(|kind| kind.eq_ignore_ascii_case("json"));
+    let read = || {
+        fs::read(file)
+            .ok()
+            .and_then(|text| serde_json::from_slice::<Value>(&text).ok())
+    };
+    !json || read().is_some_and(|found| found["a"].is_array() && found["x0"].is_array())
+}
+
 /// Text of a reduction.
 fn describe(reduction: &ModelReduction) -> String {
     let [from, to] = reduction.band.map(|hz| significant(hz, 4));
@@ -260,10 +277,15 @@ fn describe(reduction: &ModelReduction) -> String {
     format!(
         "error from {from} to {to} Hz: at most {} of the amplitude, or of its median over the band if that is larger (solved at {} frequencies)\n\
          static gain: {}\n\
-         poles: {kept} of the {} found in the band; the outputs do not show the others\n",
+         poles: {kept} of the {} found in the band{}\n",
         error_percent(reduction.error),
         reduction.solved,
         if reduction.static_gain { "exact" } else { "none" },
         counted(modes as u64, "mode"),
+        if kept < modes {
+            "; the permitted error needs no others"
+        } else {
+            ""
+        },
     )
 }

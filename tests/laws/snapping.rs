@@ -131,6 +131,27 @@ fn an_equilibrium_is_found_beyond_folds() {
     near("pressure", at_rest(&case, "accumulator_dome_pressure"), exact, 1e-9);
 }
 
+/// Goal: just below the pressure at which the dome snaps, the equilibrium is that before the snap.
+#[test]
+fn a_load_just_below_a_fold_does_not_snap() {
+    let snap = PRESSURES[2];
+    for share in [0.999, 0.9997, 0.99997, 0.999997] {
+        let mut valve = tube("d", "r", 2e8);
+        valve["pilot"] = json!({"vessel": "dome", "closed_at_m3": 4e-8, "open_at_m3": 8e-8});
+        let case = still(
+            json!({"junctions": ["d", "r", "s"], "tubes": [valve, tube("s", "d", 4e9)],
+                "ports": [port("r", 0.0), port("s", share * snap)], "accumulators": [dome("d")]}),
+            1.0,
+        );
+        near(
+            "pressure",
+            at_rest(&case, "accumulator_dome_pressure"),
+            share * snap,
+            1e-9,
+        );
+    }
+}
+
 /// Goal: the Jacobian contains the coupling of valves to vessels for creeping flow, for flow with inertia and losses, for compressed
 /// fluid, between bladders, and across components of the network.
 #[test]
@@ -228,6 +249,12 @@ fn mistakes_are_reported() {
         case["network"]["accumulators"][0]["kind"] = json!({"tank": {"volume_m3": 1e-7}});
     });
     assert!(told.contains("the rigid tank \"dome\""), "{told}");
+    let told = faults(&|case| {
+        let mut other = elastic("a", 1e-12, 0.0);
+        other["name"] = json!("dome");
+        case["network"]["accumulators"].as_array_mut().unwrap().push(other);
+    });
+    assert!(told.contains("\"dome\" is the name of several accumulators"), "{told}");
     // behind the valve alone a junction has no pressure while it is shut
     let told = faults(&|case| {
         case["network"]["ports"].as_array_mut().unwrap().remove(1);

@@ -272,6 +272,21 @@ fn responses_have_files_and_a_model() {
             .unwrap()
             .contains("Frequency response of small motions")
     );
+    let precious = dir.path().join("case.json");
+    fs::copy("cases/wiring-3.json", &precious).unwrap();
+    let over = [
+        "export",
+        "cases/wiring-3.json",
+        "--force",
+        "--state-space",
+        precious.to_str().unwrap(),
+    ];
+    let (code, _, error) = run(&[&over[..], &of[..]].concat());
+    assert!(
+        code == 2 && error.contains("something else than a state-space model"),
+        "{code} {error}"
+    );
+    assert_eq!(fs::read(&precious).unwrap(), fs::read("cases/wiring-3.json").unwrap());
     let file = dir.path().join("model.npz");
     let export = [
         &["export", "cases/wiring-3.json", "--state-space", file.to_str().unwrap()],

@@ -4,11 +4,12 @@
 
 use nalgebra::Complex;
 use serde_json::{Value, json};
+use slcbeam::case::{self, Case};
 use slcbeam::run::response::LinearResponse;
 use slcbeam::run::response::state_space::StateSpace;
 use slcbeam::run::stop::StopFlag;
 use slcbeam::study::refine::numbers;
-use slcbeam::study::response::{Request, respond};
+use slcbeam::study::response::{Request, growing, poles, respond};
 
 use super::common::checked;
 
@@ -291,5 +292,49 @@ fn a_state_space_model_has_the_same_response() {
                 );
             }
         }
+    }
+}
+
+/// A finger on a constant supply, with the valve of its supply half open, without inertia in tubes.
+fn beating() -> Case {
+    let sets = [
+        "/network/tubes/0/opening=0.5",
+        "/network/ports/0/pressure_pa/ramp/to=160000",
+        "/effects={\"tube_inertia\":\"off\",\"tube_losses\":\"off\"}",
+    ]
+    .map(String::from);
+    case::load("cases/relaxation-oscillator.json".as_ref(), &sets).unwrap()
+}
+
+/// Goal: modes that grow without oscillation are counted, whatever the band: both that `modes` finds.
+#[test]
+fn growth_without_oscillation_is_seen() {
+    let case = beating();
+    let input = "/network/ports/0/pressure_pa";
+    let linear = LinearResponse::new(&case, input, &["tip_u1".into()], Some(6.0)).unwrap();
+    for band in [[0.01, 1.0], [1.0, 200.0], [1.0, 1000.0]] {
+        let found = poles(&case, Some(6.0), &linear, band).unwrap().growing;
+        assert!(
+            found.len() == 2 && found.iter().all(|s| s.re > 1.0),
+            "{band:?}: {found:?}"
+        );
+    }
+    assert_eq!(growing(&case, Some(6.0), &linear), Ok(2));
+}
+
+/// Source: creeping flow through a valve, `q = o Δp/R`: an opening acts as its port times `Δp/o`, at every frequency. Goal: no rates of the
+/// opening in the equations.
+#[test]
+fn an_opening_of_creeping_flow_acts_as_its_port() {
+    let case = beating();
+    let response =
+        |input: &str| LinearResponse::new(&case, input, &["accumulator_dome_pressure_pa".into()], Some(6.0)).unwrap();
+    let [opening, port] = ["/network/tubes/0/opening", "/network/ports/0/pressure_pa"].map(response);
+    assert_eq!(opening.input_rate(), 0);
+    let [mut opening, mut port] = [&opening, &port].map(|response| response.solver().unwrap());
+    let mut ratio = |hz: f64| opening.at(hz).unwrap()[0] / port.at(hz).unwrap()[0];
+    let first = ratio(1.0);
+    for hz in [30.0, 1000.0, 3000.0] {
+        assert!((ratio(hz) / first - 1.0).norm() < 1e-6, "{hz} Hz: {}", ratio(hz));
     }
 }

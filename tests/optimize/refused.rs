@@ -65,7 +65,6 @@ fn what_makes_no_sense_is_refused() {
         ),
         (with(&[&["--vary", "/beam/length_m=-1:1"], &tip]), 3, "length_m"),
         (with(&[&young, &young, &tip]), 2, "set the same number"),
-        (with(&[&young, &tip, &["--command", "periodic"]]), 2, "period"),
         (with(&[&young, &tip, &["--starts", "0"]]), 2, "--starts"),
         (
             with(&[&tip, &["--choose", "/beam/young_modulus_pa=1e6|much"]]),

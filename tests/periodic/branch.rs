@@ -173,6 +173,18 @@ fn folds_begin_at_the_jump_threshold() {
     assert_eq!(special(&above, SpecialKind::Fold).len(), 2);
 }
 
+/// Goal: near a resonance whose vibration builds up over tens of periods, the cycle is found from rest: that to which the motion settles.
+#[test]
+fn a_slow_build_up_is_simulated_until_a_cycle_is_found() {
+    let drive = ["/loads/0/body_x_m_s2/signal/sine/frequency_hz=28.6".to_owned()];
+    let case = case::load("cases/clamped-strip.json".as_ref(), &drive).unwrap();
+    let scene = PeriodicScene::new(&case, None).unwrap();
+    let mut cycle = shoot(&scene, None).unwrap();
+    assert!(cycle.search.periods > 24, "{:?}", cycle.search);
+    let found = floquet::multipliers(&scene, &mut cycle, 4);
+    assert!(found.verdict.stability == CycleStability::Stable);
+}
+
 /// Cycles of a shipped or given case along a number.
 fn along_number(pointer: &str, values: &[f64], case_at: &dyn Fn(f64) -> Case) -> CyclePath {
     let cases: Vec<_> = values.iter().map(|value| (*value, case_at(*value))).collect();

@@ -124,6 +124,11 @@ pub(super) fn pilot<'a>(
         });
         return None;
     };
+    if names.iter().filter(|name| **name == pilot.vessel).count() > 1 {
+        let what = format!("\"{}\" is the name of several accumulators", pilot.vessel);
+        let fault = Violation::new(Code::Wiring, at.clone(), what);
+        faults.push(fault.hint("give each accumulator a name of its own (/network/accumulators/0/name)"));
+    }
     if matches!(vessels[vessel].kind, AccumulatorKind::Tank { .. }) {
         let what = format!("the rigid tank \"{}\", whose volume is constant", pilot.vessel);
         let fault = Violation::new(Code::Wiring, at, what);

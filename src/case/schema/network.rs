@@ -184,7 +184,7 @@ pub struct Tube {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Pilot {
-    /// Name of an accumulator, or of its point.
+    /// Name of an accumulator; of one without a name, that of its point.
     pub vessel: String,
     /// Its volume at and before which the valve is closed [m^3].
     pub closed_at_m3: f64,

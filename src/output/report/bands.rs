@@ -67,7 +67,7 @@ pub fn data(place: &Place) -> Result<Page> {
     Ok(page)
 }
 
-/// Chart of a value of each wave over the frequency; marks tell the whole wave.
+/// Chart of a value of each wave over the frequency; marks state the whole wave.
 fn chart(found: &BandsRecord, title: &str, y: Value, of: impl Fn(&WaveRecord) -> Option<f64>) -> Value {
     let words = |wave: &WaveRecord| {
         let error = wave

@@ -33,6 +33,8 @@ const WANTED_ITERATIONS: f64 = 12.0;
 const GROWTH: f64 = 2.5;
 /// Distance to a crossing path at which it is entered.
 pub(super) const NEAR: f64 = 1e-4;
+/// Longest step across a limit point: a load just below it is not passed over.
+const ACROSS: f64 = 1e-4;
 /// Number of Newton steps after which a prediction is rejected.
 pub(super) const PATIENCE: u32 = 14;
 /// Number of Newton steps after which the first solution of a stage fails.
@@ -203,6 +205,12 @@ impl PathFollower<'_> {
                 if !arrives && passes(x[n]) {
                     passed = true;
                     step *= (target - last[n]) / (x[n] - last[n]);
+                    continue;
+                }
+                if !arrives && step > ACROSS && (x[n] - last[n]) * trail.natural.last_change() < 0.0 {
+                    self.path.rejected += 1;
+                    growth = 1.0;
+                    step = (0.25 * step).max(ACROSS);
                     continue;
                 }
                 // with prescribed load, the sign of the determinant is reversed if the load decreases

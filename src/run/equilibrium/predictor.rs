@@ -31,6 +31,15 @@ impl RecentPoints {
         self.points.last().map_or(&[], |p| &p.1)
     }
 
+    /// Change of the last coordinate over the last step.
+    pub fn last_change(&self) -> f64 {
+        let mut values = self.points.iter().rev().filter_map(|p| p.1.last());
+        match (values.next(), values.next()) {
+            (Some(last), Some(before)) => last - before,
+            _ => 0.0,
+        }
+    }
+
     /// Degree of the polynomial through the points.
     pub fn degree(&self) -> u8 {
         self.points.len() as u8 - 1

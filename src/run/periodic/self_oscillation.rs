@@ -303,7 +303,9 @@ fn none(case: &Case, amplitude: f64, reason: &str) -> Error {
         )
     });
     let hint = match slowest {
-        Some((_, s)) if s.re > 0.0 => "a larger displacement in /start, or a tighter /solver/rtol".into(),
+        Some((_, s)) if s.re > 0.0 => {
+            "a longer /time/end_s, a larger displacement in /start, or a tighter /solver/rtol".into()
+        }
         _ => format!(
             "a longer /time/end_s or a larger /start may reach a self-oscillation; `slcbeam modes --at {at}` lists the modes"
         ),

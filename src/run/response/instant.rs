@@ -171,7 +171,8 @@ impl<'a> Instant<'a> {
                 read(self)
             });
             let all = none.iter().zip(&one).zip(&two);
-            all.map(|((none, one), two)| (4.0 * one - 3.0 * none - two) / (2.0 * step))
+            // differences first: without influence they are exactly zero
+            all.map(|((none, one), two)| (4.0 * (one - none) - (two - none)) / (2.0 * step))
                 .collect()
         });
         limits(&quotients)

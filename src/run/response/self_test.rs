@@ -13,6 +13,7 @@ use super::scaled_model::{EARLY, ScaledModel};
 use super::state_space::{StateSpace, dynamic};
 use super::{LinearResponse, columns};
 use crate::dae::{BeamDae, Dae};
+use crate::error::numbers::significant;
 use crate::functions::signals::{Ramp, RampShape, Signal};
 use crate::integrate::{AbsoluteTolerances, IntegrationError, halt};
 use crate::numerics::threads;
@@ -275,7 +276,10 @@ fn simulated(
         }
     }
     match rows.len() {
-        short if short < EARLY => Err(format!("{STEPS} steps end before {} s", times[EARLY - 1])),
+        short if short < EARLY => Err(format!(
+            "{STEPS} steps end before {} s",
+            significant(times[EARLY - 1], 3)
+        )),
         _ => Ok(rows),
     }
 }

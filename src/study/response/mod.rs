@@ -146,6 +146,7 @@ pub fn respond_on_mesh(case: &Case, request: &Request, response: LinearResponse)
         }
     });
     unknown.extend(unsearched(response.about.y.len()));
+    unknown.extend(found.growth_unknown.take());
     let known: Vec<_> = found.poles.iter().map(|pole| pole.s).collect();
     let approximated = ApproximatedResponse::new(&response, request.around(), &known, OWN)?;
     found.complete(&response, &approximated, request.around());

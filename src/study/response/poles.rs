@@ -18,6 +18,9 @@ const POLES: usize = 48;
 const SEARCHED: usize = 4000;
 /// Ratio of a real part to its error bound above which its sign is certain.
 const CERTAIN: f64 = 10.0;
+/// Number of eigenvalues nearest to a real shift, and number of differential unknowns up to which all are computed if these do not converge.
+const GROWING: usize = 8;
+const DENSE: usize = 400;
 
 /// A pole in the band.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -54,7 +57,13 @@ pub fn poles(
         .pairs;
     let farthest = pairs.iter().map(|pair| (pair.s - middle).norm()).fold(0.0, f64::max);
     let whole = pairs.len() < 2 * POLES || farthest >= (to - middle.im).max(middle.im - from);
-    let growing = growing_among(&pairs).map(|pair| pair.s).collect();
+    let (growing, growth_unknown) = match growing_of(&plain.pencil(), &pairs, [middle.im, to]) {
+        Ok(growing) => (growing, None),
+        Err(why) => (
+            growing_among(&pairs).map(|pair| pair.s).collect(),
+            Some(format!("growing modes: {why}")),
+        ),
+    };
     let mut poles = vec![];
     for pair in pairs.iter().filter(|pair| pair.s.im > 0.0) {
         let (mut s, mut bound) = (pair.s, pair.error);
@@ -77,6 +86,7 @@ pub fn poles(
         growing,
         whole,
         searched: true,
+        growth_unknown,
     };
     found.sort();
     Ok(found)
@@ -93,6 +103,8 @@ pub struct Poles {
     pub whole: bool,
     /// False if no pole was searched in a large system.
     pub searched: bool,
+    /// Reason why growing modes without oscillation are unknown.
+    pub growth_unknown: Option<String>,
 }
 
 impl Poles {
@@ -164,6 +176,33 @@ pub fn growing(case: &Case, at: Option<f64>, response: &LinearResponse) -> std::
     let apart = response.remembers.then(|| plain(case, at)).transpose()?;
     let plain = apart.as_ref().unwrap_or(&response.about);
     let middle = Complex::new(0.0, plain.frequency());
-    let found = spectral::nearest(&plain.pencil(), middle, 2 * POLES, &EigenvalueOptions::default());
-    Ok(growing_among(&found.map_err(|failure| failure.to_string())?.pairs).count())
+    let words = |failure: spectral::SpectralError| failure.to_string();
+    let pencil = plain.pencil();
+    let found = spectral::nearest(&pencil, middle, 2 * POLES, &EigenvalueOptions::default()).map_err(words)?;
+    growing_of(&pencil, &found.pairs, [middle.im, 10.0 * middle.im]).map(|growing| growing.len())
+}
+
+/// Growing poles among those found near the imaginary axis, and those that grow without oscillation: to a shift σ on the positive real
+/// axis all growing ones below 2σ are nearer than any that decays. The shifts are those given and multiples of the second one.
+fn growing_of(
+    pencil: &spectral::Pencil,
+    found: &[spectral::EigenPair],
+    shifts: [f64; 2],
+) -> std::result::Result<Vec<Complex<f64>>, String> {
+    let options = EigenvalueOptions {
+        at_last_dense_up_to: DENSE,
+        ..EigenvalueOptions::default()
+    };
+    let mut all: Vec<Complex<f64>> = growing_among(found).map(|pair| pair.s).collect();
+    let [first, second] = shifts;
+    for shift in [first, second, 10.0 * second, 100.0 * second] {
+        let beside = spectral::nearest(pencil, Complex::new(shift, 0.0), GROWING, &options);
+        let beside = beside.map_err(|failure| failure.to_string())?.pairs;
+        for pair in growing_among(&beside) {
+            if !all.iter().any(|s| (s - pair.s).norm() < SAME_POLE * pair.s.norm()) {
+                all.push(pair.s);
+            }
+        }
+    }
+    Ok(all)
 }
