@@ -57,7 +57,7 @@ pub fn poles(
         .pairs;
     let farthest = pairs.iter().map(|pair| (pair.s - middle).norm()).fold(0.0, f64::max);
     let whole = pairs.len() < 2 * POLES || farthest >= (to - middle.im).max(middle.im - from);
-    let (growing, growth_unknown) = match growing_of(&plain.pencil(), &pairs, [middle.im, to]) {
+    let (growing, growth_unknown) = match growing_of(&plain.pencil(), &pairs, [middle.im, to.max(plain.frequency())]) {
         Ok(growing) => (growing, None),
         Err(why) => (
             growing_among(&pairs).map(|pair| pair.s).collect(),
@@ -195,7 +195,7 @@ fn growing_of(
     };
     let mut all: Vec<Complex<f64>> = growing_among(found).map(|pair| pair.s).collect();
     let [first, second] = shifts;
-    for shift in [first, second, 10.0 * second, 100.0 * second] {
+    for shift in [first, second, 30.0 * second, 1000.0 * second] {
         let beside = spectral::nearest(pencil, Complex::new(shift, 0.0), GROWING, &options);
         let beside = beside.map_err(|failure| failure.to_string())?.pairs;
         for pair in growing_among(&beside) {
