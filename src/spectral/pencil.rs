@@ -181,11 +181,11 @@ impl<'a> Factors<'a> {
         finite(b)
     }
 
-    /// The eigenpair that inverse iteration with the shift s approaches, in general the nearest one.
+    /// The eigenpair that inverse iteration with the shift s approaches in some steps, in general the nearest one.
     ///
     /// # Errors
     /// The pencil is singular near s.
-    pub fn eigenpair(&mut self, s: Complex<f64>) -> Result<EigenPair, SpectralError> {
+    pub fn eigenpair(&mut self, s: Complex<f64>, steps: usize) -> Result<EigenPair, SpectralError> {
         let shifted = &mut self.0;
         shifted.factor(s)?;
         // the factors are those of other shifts from now on
@@ -194,9 +194,12 @@ impl<'a> Factors<'a> {
         let begin = |k: usize| Complex::new((1.7 * k as f64).sin(), (0.6 * k as f64).cos());
         let mut v: Vec<_> = (0..shifted.differential.len()).map(begin).collect();
         let mut next = v.clone();
-        shifted.apply(&v, &mut next);
-        std::mem::swap(&mut v, &mut next);
-        let x = unit(shifted.whole(&unit(v)).to_vec());
+        for _ in 1..steps {
+            shifted.apply(&v, &mut next);
+            v = unit(std::mem::take(&mut next));
+            next = v.clone();
+        }
+        let x = unit(shifted.whole(&v).to_vec());
         refine(shifted, s, x)
     }
 

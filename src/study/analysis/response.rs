@@ -93,7 +93,10 @@ impl ResponseAnalysis {
 
     fn outcome(&self, case: &Case, all: &Figures) -> Result<AnalysisOutcome> {
         let mut outcome = AnalysisOutcome::finished();
-        outcome.put("stable", f64::from(u8::from(all.found.growing == 0)));
+        // without a complete search only a growing pole is certain
+        if all.found.growing > 0 || all.found.unknown.is_empty() {
+            outcome.put("stable", f64::from(u8::from(all.found.growing == 0)));
+        }
         for (curve, values) in all.found.curves.iter().zip(&all.values) {
             for (name, peak) in peaks(curve) {
                 outcome.put(format!("{name}.frequency_hz"), peak.frequency_hz);

@@ -20,6 +20,10 @@ const SEARCHED: usize = 4000;
 const CERTAIN: f64 = 10.0;
 /// Number of eigenvalues nearest to a real shift, and number of differential unknowns up to which all are computed if these do not converge.
 const GROWING: usize = 8;
+/// Multiples of the largest shift, and steps of inverse iteration there; steps from the pole of an approximation.
+const FASTER: [f64; 2] = [30.0, 1000.0];
+const FAST_STEPS: usize = 40;
+const NEAR_STEPS: usize = 2;
 const DENSE: usize = 400;
 
 /// A pole in the band.
@@ -127,7 +131,9 @@ impl Poles {
             return;
         };
         for about in poles {
-            let Ok(pair) = factors.eigenpair(about) else { continue };
+            let Ok(pair) = factors.eigenpair(about, NEAR_STEPS) else {
+                continue;
+            };
             let known = |pole: &BandPole| (pole.s - pair.s).norm() < SAME_POLE * pair.s.norm();
             if within(pair.s) && pair.error < NEAR_POLE * pair.s.norm() && !self.poles.iter().any(known) {
                 self.poles.push(BandPole {
@@ -155,7 +161,9 @@ fn plain(case: &Case, at: Option<f64>) -> std::result::Result<modes::Linearised,
 
 /// Eigenvalues with positive real part, one of each conjugate pair.
 fn growing_among(pairs: &[spectral::EigenPair]) -> impl Iterator<Item = &spectral::EigenPair> {
-    pairs.iter().filter(|pair| pair.s.im >= 0.0 && pair.s.re > pair.error)
+    // the imaginary part of a real eigenvalue is a rounding error of either sign
+    let upper = |s: Complex<f64>| s.im >= -SAME_POLE * s.norm();
+    pairs.iter().filter(move |pair| upper(pair.s) && pair.s.re > pair.error)
 }
 
 /// Reason why growing modes may be unknown in a system with this number of unknowns, if it is not searched.
@@ -184,6 +192,9 @@ pub fn growing(case: &Case, at: Option<f64>, response: &LinearResponse) -> std::
 
 /// Growing poles among those found near the imaginary axis, and those that grow without oscillation: to a shift σ on the positive real
 /// axis all growing ones below 2σ are nearer than any that decays. The shifts are those given and multiples of the second one.
+///
+/// # Errors
+/// No growing pole was found, and a search failed.
 fn growing_of(
     pencil: &spectral::Pencil,
     found: &[spectral::EigenPair],
@@ -194,15 +205,28 @@ fn growing_of(
         ..EigenvalueOptions::default()
     };
     let mut all: Vec<Complex<f64>> = growing_among(found).map(|pair| pair.s).collect();
-    let [first, second] = shifts;
-    for shift in [first, second, 30.0 * second, 1000.0 * second] {
-        let beside = spectral::nearest(pencil, Complex::new(shift, 0.0), GROWING, &options);
-        let beside = beside.map_err(|failure| failure.to_string())?.pairs;
-        for pair in growing_among(&beside) {
+    let mut add = |pairs: &[spectral::EigenPair]| {
+        for pair in growing_among(pairs) {
             if !all.iter().any(|s| (s - pair.s).norm() < SAME_POLE * pair.s.norm()) {
                 all.push(pair.s);
             }
         }
+    };
+    let mut failed = None;
+    for shift in shifts {
+        match spectral::nearest(pencil, Complex::new(shift, 0.0), GROWING, &options) {
+            Ok(beside) => add(&beside.pairs),
+            Err(failure) => failed = Some(failure.to_string()),
+        }
+    }
+    // many decaying modes are about as far from a large shift: only one that grows fast stands out
+    for multiple in FASTER {
+        let shift = Complex::new(multiple * shifts[1], 0.0);
+        let pair = Factors::new(pencil, shift).and_then(|mut factors| factors.eigenpair(shift, FAST_STEPS));
+        add(&pair.into_iter().collect::<Vec<_>>());
+    }
+    if let Some(why) = failed.filter(|_| all.is_empty()) {
+        return Err(why);
     }
     Ok(all)
 }
