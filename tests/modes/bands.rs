@@ -33,7 +33,7 @@ pub(super) fn beam(cells: usize, attached: &Value) -> Value {
     })
 }
 
-fn lattice(case: &Value) -> Lattice {
+pub(super) fn lattice(case: &Value) -> Lattice {
     Lattice::new(&checked(case)).unwrap()
 }
 
@@ -42,7 +42,7 @@ fn waves(lattice: &Lattice, hz: f64) -> Vec<BlochWave> {
 }
 
 /// `cos μ` of the wave of bending, or of stretch, that has the nearest one.
-fn cosine(lattice: &Lattice, stretch: bool, hz: f64, near: Complex<f64>) -> Complex<f64> {
+pub(super) fn cosine(lattice: &Lattice, stretch: bool, hz: f64, near: Complex<f64>) -> Complex<f64> {
     let own = |wave: &BlochWave| {
         let energy = lattice.energy(wave);
         (energy.stretch > energy.bending) == stretch
@@ -57,7 +57,7 @@ fn cosine(lattice: &Lattice, stretch: bool, hz: f64, near: Complex<f64>) -> Comp
 }
 
 /// Limit of four meshes of second order, each of twice as many cells (Richardson).
-fn limit(of: impl Fn(usize) -> Complex<f64>, cells: [usize; 4]) -> Complex<f64> {
+pub(super) fn limit(of: impl Fn(usize) -> Complex<f64>, cells: [usize; 4]) -> Complex<f64> {
     let between = |row: Vec<Complex<f64>>, weight: f64| -> Vec<Complex<f64>> {
         row.windows(2)
             .map(|pair| pair[1] + (pair[1] - pair[0]) / weight)

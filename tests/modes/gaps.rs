@@ -1,12 +1,13 @@
 //! Gaps as figures of designs: names, derivatives, errors; what rounding hides is no gap.
 
+use nalgebra::Complex;
 use serde_json::json;
 use slcbeam::case::Case;
 use slcbeam::case::parameter::Parameter;
 use slcbeam::study::analysis::derivatives::FigureSlopes;
 use slcbeam::study::analysis::{AnalysisKind, AnalysisOutcome, AnalysisRequest, found};
 
-use super::bands::{beam, papers};
+use super::bands::{beam, cosine, lattice, limit, papers};
 use super::common::checked;
 
 fn derivatives(case: &Case, pointer: &str) -> (AnalysisOutcome, FigureSlopes) {
@@ -80,4 +81,37 @@ fn gaps_of_designs_have_names_and_errors() {
     }
     let error = found.figure("bending_gap_1.to_hz.error").unwrap();
     assert!((1e-6..0.05).contains(&error), "{error}");
+}
+
+/// Source: Liu & Hussein 2012, a resonator at each cell: c = cos μ with
+/// (c - cos b)(c - cosh b) = D/(4 b³) [sin b (c - cosh b) - sinh b (c - cos b)], D = -r b⁴/(1 - w²), b² = w, for a mass ratio r = 1/2 and the
+/// resonance at w = 1. A gap begins at w = 0.994780133695 (c = -1). At one frequency the resonator acts as a mass below its resonance, as a
+/// spring to ground above.
+///
+/// Goal: the waves below, at the edge of, in and above the gap. Tolerance: 1e-8 after extrapolation.
+#[test]
+fn a_beam_with_resonators_has_the_waves_of_its_closed_form() {
+    let (unit, mass) = (100.0, 0.05);
+    for w in [0.5, 0.9, 0.994780133695, 1.1, 2.0, 5.0_f64] {
+        let b = w.sqrt();
+        let acting = 1.0 / (1.0 - w * w);
+        let s = -0.5 * acting * b / 4.0;
+        let half = 0.5 * (b.cos() + b.cosh() + s * (b.sin() - b.sinh()));
+        let product = b.cos() * b.cosh() + s * (b.sin() * b.cosh() - b.sinh() * b.cos());
+        let root = Complex::new(half * half - product, 0.0).sqrt();
+        let attached = if w < 1.0 {
+            json!({"mass_kg": mass * acting})
+        } else {
+            json!({"stiffness_x_n_m": -mass * acting * (unit * w).powi(2)})
+        };
+        for exact in [half + root, half - root] {
+            let hz = unit * w / std::f64::consts::TAU;
+            let of = |cells| cosine(&lattice(&beam(cells, &attached)), false, hz, exact);
+            let found = limit(of, [8, 16, 32, 64]);
+            assert!(
+                (found - exact).norm() < 1e-8 * exact.norm().max(1.0),
+                "{w}: {found} for {exact}"
+            );
+        }
+    }
 }
