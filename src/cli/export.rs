@@ -181,7 +181,12 @@ fn state_space(asked: &ExportArguments, file: &Path, input: &str) -> Result<Exit
             let poles = poles(&case, asked.at, &response, band);
             let mut known = poles.as_ref().cloned().unwrap_or_default();
             let model = reduce(&response, band, &mut known, error)?;
-            (model, poles.map(|poles| poles.growing.len()))
+            // the model's own poles are among them now
+            let growing = match known.growth_unknown.filter(|_| known.growing.is_empty()) {
+                Some(why) => Err(why),
+                None => Ok(known.growing.len()),
+            };
+            (model, poles.and(growing))
         }
         None if response.about.y.len() > MOST_STATES => {
             return Err(Error::Usage(format!(

@@ -3,10 +3,9 @@
 use nalgebra::Complex;
 
 use crate::error::Result;
-use crate::integrate::halt;
 use crate::numerics::rational::{AxisSamples, RationalFit, relative_error};
-use crate::numerics::threads;
 use crate::run::response::{Frequencies, LinearResponse};
+use crate::study::in_halves_by;
 
 /// Samples of a decade at first, and in all.
 const PER_DECADE: f64 = 12.0;
@@ -144,15 +143,10 @@ impl<'a> Solvers<'a> {
 
     /// Exact responses at angular frequencies.
     fn at(&mut self, omega: &[f64]) -> Result<Vec<Vec<Complex<f64>>>> {
-        let (first, second) = omega.split_at(omega.len() / 2);
-        let part = |solver: &mut Frequencies, omega: &[f64]| -> Result<Vec<_>> {
-            let hz = omega.iter().map(|omega| omega / std::f64::consts::TAU);
+        in_halves_by(&mut self.0, omega, |solver, half| {
+            let hz = half.iter().map(|omega| omega / std::f64::consts::TAU);
             hz.map(|hz| solver.at(hz)).collect()
-        };
-        let heard = &halt::heard();
-        let [one, other] = &mut self.0;
-        let (first, second) = threads::both(|| heard.during(|| part(one, first)), || part(other, second));
-        Ok([first?, second?].concat())
+        })
     }
 }
 

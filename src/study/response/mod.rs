@@ -16,7 +16,7 @@ use nalgebra::Complex;
 use self::approximation::ApproximatedResponse;
 pub use self::peaks::BandPeak;
 use self::peaks::{exact_peaks, peaks};
-pub use self::poles::{BandPole, Poles, growing, poles, unsearched};
+pub use self::poles::{BandPole, Poles, growing, poles};
 use self::samples::Sampling;
 use super::refine::finer_along_bladders;
 use crate::case::Case;
@@ -141,11 +141,9 @@ pub fn respond_on_mesh(case: &Case, request: &Request, response: LinearResponse)
         unknown.push(format!("poles: {why}"));
         Poles {
             whole: true,
-            searched: true,
             ..Poles::default()
         }
     });
-    unknown.extend(unsearched(response.about.y.len()));
     unknown.extend(found.growth_unknown.take());
     let known: Vec<_> = found.poles.iter().map(|pole| pole.s).collect();
     let approximated = ApproximatedResponse::new(&response, request.around(), &known, OWN)?;

@@ -16,8 +16,6 @@ const SAME_POLE: f64 = 1e-6;
 /// Largest number of pole pairs to compute in the band, and largest number of unknowns of a system in which they are searched.
 const POLES: usize = 48;
 const SEARCHED: usize = 4000;
-/// Ratio of a real part to its error bound above which its sign is certain.
-const CERTAIN: f64 = 10.0;
 /// Number of eigenvalues nearest to a real shift, and number of differential unknowns up to which all are computed if these do not converge.
 const GROWING: usize = 8;
 /// Multiples of the largest shift, and steps of inverse iteration there; steps from the pole of an approximation.
@@ -47,8 +45,15 @@ pub fn poles(
     band: [f64; 2],
 ) -> std::result::Result<Poles, String> {
     let words = |failure: spectral::SpectralError| failure.to_string();
-    if response.about.y.len() > SEARCHED {
-        return Ok(Poles::default());
+    let unknowns = response.about.y.len();
+    if unknowns > SEARCHED {
+        return Ok(Poles {
+            growth_unknown: Some(format!(
+                "modes that no output shows, growing ones among them: they are not searched in {}. Use `slcbeam modes` near a frequency",
+                counted(unknowns as u64, "unknown")
+            )),
+            ..Poles::default()
+        });
     }
     let apart = response.remembers.then(|| plain(case, at)).transpose()?;
     let plain = apart.as_ref().unwrap_or(&response.about);
@@ -89,7 +94,6 @@ pub fn poles(
         poles,
         growing,
         whole,
-        searched: true,
         growth_unknown,
     };
     found.sort();
@@ -105,9 +109,7 @@ pub struct Poles {
     pub growing: Vec<Complex<f64>>,
     /// False if the band may contain further poles.
     pub whole: bool,
-    /// False if no pole was searched in a large system.
-    pub searched: bool,
-    /// Reason why growing modes without oscillation are unknown.
+    /// Reason why growing modes may be unknown.
     pub growth_unknown: Option<String>,
 }
 
@@ -140,11 +142,8 @@ impl Poles {
                     s: pair.s,
                     bound: pair.error,
                 });
+                add_growing(&mut self.growing, &[pair]);
             }
-        }
-        if !self.searched {
-            let grows = |pole: &&BandPole| pole.s.re > CERTAIN * pole.bound;
-            self.growing = self.poles.iter().filter(grows).map(|pole| pole.s).collect();
         }
         self.sort();
     }
@@ -159,21 +158,20 @@ fn plain(case: &Case, at: Option<f64>) -> std::result::Result<modes::Linearised,
     plain.map_err(|fault| fault.to_string())
 }
 
+/// Adds growing eigenvalues that are not yet known.
+fn add_growing(known: &mut Vec<Complex<f64>>, pairs: &[spectral::EigenPair]) {
+    for pair in growing_among(pairs) {
+        if !known.iter().any(|s| (s - pair.s).norm() < SAME_POLE * pair.s.norm()) {
+            known.push(pair.s);
+        }
+    }
+}
+
 /// Eigenvalues with positive real part, one of each conjugate pair.
 fn growing_among(pairs: &[spectral::EigenPair]) -> impl Iterator<Item = &spectral::EigenPair> {
     // the imaginary part of a real eigenvalue is a rounding error of either sign
     let upper = |s: Complex<f64>| s.im >= -SAME_POLE * s.norm();
     pairs.iter().filter(move |pair| upper(pair.s) && pair.s.re > pair.error)
-}
-
-/// Reason why growing modes may be unknown in a system with this number of unknowns, if it is not searched.
-pub fn unsearched(unknowns: usize) -> Option<String> {
-    (unknowns > SEARCHED).then(|| {
-        format!(
-            "modes that no output shows, growing ones among them: they are not searched in {}. Use `slcbeam modes` near a frequency",
-            counted(unknowns as u64, "unknown")
-        )
-    })
 }
 
 /// Number of growing poles, or conjugate pairs, near the characteristic frequency of the state.
@@ -205,17 +203,10 @@ fn growing_of(
         ..EigenvalueOptions::default()
     };
     let mut all: Vec<Complex<f64>> = growing_among(found).map(|pair| pair.s).collect();
-    let mut add = |pairs: &[spectral::EigenPair]| {
-        for pair in growing_among(pairs) {
-            if !all.iter().any(|s| (s - pair.s).norm() < SAME_POLE * pair.s.norm()) {
-                all.push(pair.s);
-            }
-        }
-    };
     let mut failed = None;
     for shift in shifts {
         match spectral::nearest(pencil, Complex::new(shift, 0.0), GROWING, &options) {
-            Ok(beside) => add(&beside.pairs),
+            Ok(beside) => add_growing(&mut all, &beside.pairs),
             Err(failure) => failed = Some(failure.to_string()),
         }
     }
@@ -223,7 +214,7 @@ fn growing_of(
     for multiple in FASTER {
         let shift = Complex::new(multiple * shifts[1], 0.0);
         let pair = Factors::new(pencil, shift).and_then(|mut factors| factors.eigenpair(shift, FAST_STEPS));
-        add(&pair.into_iter().collect::<Vec<_>>());
+        add_growing(&mut all, &pair.into_iter().collect::<Vec<_>>());
     }
     if let Some(why) = failed.filter(|_| all.is_empty()) {
         return Err(why);
