@@ -181,8 +181,8 @@ def test_a_loop_designed_on_the_model_is_that_of_the_beam(program, tmp_path):
     case = EXAMPLE.parents[2] / "cases/tour-actuator.json"
     program("export", case, "--set", f"{INLET}=0", "--state-space", model, "--error", "1e-3", "--input", INLET, "--output", "tip_u1")
     loop = EXAMPLE.with_name("pressure_loop.py")
-    told = subprocess.run([sys.executable, str(loop), str(model)], capture_output=True, text=True, check=True).stdout
-    assert told.strip() in (EXAMPLE.parents[2] / "docs/tour-actuator.md").read_text(encoding="utf-8"), told
+    printed = subprocess.run([sys.executable, str(loop), str(model)], capture_output=True, text=True, check=True).stdout
+    assert printed.strip() in (EXAMPLE.parents[2] / "docs/tour-actuator.md").read_text(encoding="utf-8"), printed
     spec = importlib.util.spec_from_file_location("pressure_loop", loop)
     example = importlib.util.module_from_spec(spec)
     spec.loader.exec_module(example)

@@ -1,4 +1,4 @@
-//! What a frequency response costs: solutions of the equations, and times.
+//! Cost of a frequency response: solutions of the equations, and times.
 //!
 //! Source: direct solutions at frequencies that the approximation does not use. Goal: few solutions, for 20 and for 2000 bladders. Times are
 //! printed and judge nothing.

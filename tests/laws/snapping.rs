@@ -194,8 +194,8 @@ fn mistakes_are_reported() {
         let Err(Error::Case(error)) = parse(&case) else {
             panic!("accepted: {case}")
         };
-        let told = |v: &slcbeam::error::Violation| format!("{} {} {:?} {:?}", v.pointer, v.what, v.allowed, v.nearest);
-        error.violations.iter().map(told).collect::<Vec<_>>().join("\n")
+        let words = |v: &slcbeam::error::Violation| format!("{} {} {:?} {:?}", v.pointer, v.what, v.allowed, v.nearest);
+        error.violations.iter().map(words).collect::<Vec<_>>().join("\n")
     };
     let at = |case: &mut Value, pointer: &str, value: Value| *case.pointer_mut(pointer).unwrap() = value;
     for (pointer, value, part) in [
@@ -235,28 +235,31 @@ fn mistakes_are_reported() {
             "for a compressible fluid",
         ),
     ] {
-        let told = faults(&|case| at(case, pointer, value.clone()));
-        assert!(told.contains(part), "{pointer}: {told}");
+        let reported = faults(&|case| at(case, pointer, value.clone()));
+        assert!(reported.contains(part), "{pointer}: {reported}");
     }
     assert!(faults(&|case| at(case, "/network/tubes/0/pilot/vessel", json!("dom"))).contains("Some(\"dome\")"));
-    let told = faults(&|case| {
+    let reported = faults(&|case| {
         case["network"]["tubes"][0]["check_valve"] = json!({"cracking_pressure_pa": 0, "forward_conductance_m3_s_pa": 1e-9,
             "reverse_conductance_m3_s_pa": 1e-14, "smoothing_pa": 50});
     });
-    assert!(told.contains("a pilot of a tube with a check valve"), "{told}");
-    let told = faults(&|case| {
+    assert!(reported.contains("a pilot of a tube with a check valve"), "{reported}");
+    let reported = faults(&|case| {
         case["fluid"] = json!({"kind": "gas", "density_kg_m3": 1.2, "viscosity_pa_s": 1.8e-5});
         case["network"]["accumulators"][0]["kind"] = json!({"tank": {"volume_m3": 1e-7}});
     });
-    assert!(told.contains("the rigid tank \"dome\""), "{told}");
-    let told = faults(&|case| {
+    assert!(reported.contains("the rigid tank \"dome\""), "{reported}");
+    let reported = faults(&|case| {
         let mut other = elastic("a", 1e-12, 0.0);
         other["name"] = json!("dome");
         case["network"]["accumulators"].as_array_mut().unwrap().push(other);
     });
-    assert!(told.contains("\"dome\" is the name of several accumulators"), "{told}");
+    assert!(
+        reported.contains("\"dome\" is the name of several accumulators"),
+        "{reported}"
+    );
     // behind the valve alone a junction has no pressure while it is shut
-    let told = faults(&|case| {
+    let reported = faults(&|case| {
         case["network"]["ports"].as_array_mut().unwrap().remove(1);
         case["network"]["accumulators"]
             .as_array_mut()
@@ -265,7 +268,7 @@ fn mistakes_are_reported() {
         case["network"]["ports"].as_array_mut().unwrap().remove(0);
     });
     assert!(
-        told.contains("junction \"b\" reaches no bladder, accumulator or pressure port"),
-        "{told}"
+        reported.contains("junction \"b\" reaches no bladder, accumulator or pressure port"),
+        "{reported}"
     );
 }
