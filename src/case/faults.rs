@@ -72,6 +72,24 @@ impl Violations {
         }
     }
 
+    /// Adds the faults of a part of the case at their pointers in the whole; those without one are left out.
+    pub fn take_in(&mut self, part: Self, whole: impl Fn(&str) -> Option<String>) {
+        for (fault, mark) in part.list {
+            if let Some(pointer) = whole(&fault.pointer) {
+                self.keep(Violation { pointer, ..fault }, mark);
+            }
+        }
+    }
+
+    /// Replaces the pointers of faults for which `new` gives another one.
+    pub fn rename(&mut self, new: impl Fn(&str) -> Option<String>) {
+        for (fault, _) in &mut self.list {
+            if let Some(pointer) = new(&fault.pointer) {
+                fault.pointer = pointer;
+            }
+        }
+    }
+
     /// True if further faults are counted, not stored.
     pub fn is_full(&self) -> bool {
         self.list.len() >= MOST

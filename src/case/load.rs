@@ -12,7 +12,9 @@ use super::presets::Preset;
 use super::scaling::{CoefficientSizes, LAWS, Sizes, may_change_sizes};
 use super::schema::Case;
 use super::wording::nearest;
-use super::{check, counts, fluids, parse as json, presets, reading, schema_json, section, sets, tables, validate};
+use super::{
+    check, counts, fluids, parse as json, presets, reading, schema_json, section, sets, structure, tables, validate,
+};
 use crate::error::{Code, Error, Result, Violation};
 
 /// Largest case file [bytes].
@@ -154,6 +156,14 @@ pub fn parse_varied(text: &str, path: &Path, base: &Path, sets: &[String], varie
     spans.doubt(&mut faults);
     validate::validate(&value, &own, &schema_json::CASE, &mut faults);
     faults.drop_below(&invalid);
+    if own.get("beams").is_some() {
+        // they repeat those of beams
+        faults.drop_below(&["/spans".to_owned()]);
+        if own.get("spans").is_some() {
+            let fault = Violation::new(Code::Together, "/spans", "spans of a case with several beams");
+            faults.push_at_key(fault.hint("give them in the beam that they belong to: /beams/0/spans"));
+        }
+    }
     // `null` from the command line removes an optional value.
     let cleared = source.sets.iter().map(|set| set.pointer.clone());
     let cleared: Vec<String> = cleared
@@ -208,8 +218,9 @@ struct Filled {
 
 impl Filled {
     fn new(own: Value, sets: &[SetValue]) -> Self {
-        let spans = section::SpanSections::new(&own);
         let mut whole = own;
+        structure::fill(&mut whole);
+        let spans = section::SpanSections::new(&whole);
         spans.outline(&mut whole);
         let (section, fluid) = (section::computed_values(&whole), fluids::preset_values(&whole));
         let brought = [section.as_ref().map(|s| &s.values), fluid.as_ref().map(|f| &f.values)];

@@ -37,6 +37,7 @@ pub mod section;
 mod separated;
 mod sets;
 pub mod spans;
+pub mod structure;
 pub mod synonyms;
 mod tables;
 mod unit_mistakes;

@@ -37,7 +37,9 @@ pub fn schema_json() -> Value {
         .unwrap_or_default()
         .into_iter()
         .partition(|key| SECTIONS.iter().any(|s| key == s));
+    let needed: Vec<Value> = needed.into_iter().filter(|key| key != "ends").collect();
     schema["required"] = needed.into();
+    schema["anyOf"] = json!([{"required": ["ends"]}, {"required": ["beams"]}]);
     schema["if"] = json!({"anyOf": [{"required": ["preset"]}, {"required": ["section"]}]});
     schema["else"]["required"] = from_preset.into();
     for (name, part) in parts {
@@ -54,6 +56,14 @@ pub fn schema_json() -> Value {
         // null: computed from the cross-section
         if let Some(kind) = definition.pointer_mut("/properties/permeability_m4/type") {
             *kind = json!(["number", "null"]);
+        }
+        // bladders of a named beam, "left:3"
+        for pointer in ["/properties/bladder/type", "/properties/bladders/items/type"] {
+            if let Some(kind) = definition.pointer_mut(pointer).filter(|kind| !kind.is_null()) {
+                let mut kinds = kind.as_array().cloned().unwrap_or_else(|| vec![kind.clone()]);
+                kinds.push("string".into());
+                *kind = kinds.into();
+            }
         }
     }
     schema_words::complete(&mut schema, PARTLY);

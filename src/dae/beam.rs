@@ -239,7 +239,7 @@ impl Dae for BeamDae {
     /// Vectors of displacements and, if both are unknowns, of velocities.
     fn vectors(&self) -> Vec<RotatedVectors> {
         let l = &self.system.layout;
-        if self.system.model.kinematics != Kinematics::FiniteRotation {
+        if self.system.model.kinematics != Kinematics::FiniteRotation || self.system.model.structure.is_some() {
             return vec![];
         }
         let blocks = match l.lines.each_ref().map(|line| (line.u.start, line.v.as_ref())) {

@@ -129,7 +129,8 @@ impl ChainRule {
         // for each strain: rows and indices of ∂F/∂s, columns and indices of ds/dy
         let mut by_strain: Vec<Vec<(usize, usize)>> = vec![vec![]; on.strains.len()];
         let mut of_strain = by_strain.clone();
-        let (k, borders) = (system.mesh.cells_per_segment, &system.sections.offset_borders);
+        let (mesh, borders) = (&system.mesh, &system.sections.offset_borders);
+        let k = mesh.cells_per_segment;
         for (column, rows) in columns.iter().enumerate().filter(|(_, rows)| !rows.is_empty()) {
             let lane = colour[column] % LANES;
             let sweep = &mut chain.sweeps[colour[column] / LANES];
@@ -166,17 +167,23 @@ impl ChainRule {
                     if system.sections.offset_border(node).is_some() {
                         continue;
                     }
-                    let (left, right) = system.mesh.segments_of_node(node);
+                    let (left, right) = mesh.segments_of_node(node);
                     for j in left..=right {
-                        read(own.mean_moment.start + j, -system.mesh.moment_weight(node - j * k));
+                        read(
+                            own.mean_moment.start + j,
+                            -mesh.moment_weight(node - mesh.cells_of(j).start),
+                        );
                     }
                 } else if row < places.forces {
                     let side = row - places.sides;
-                    let j = borders[side / 2] / k - 1 + side % 2;
-                    read(own.mean_moment.start + j, -system.mesh.moment_weight(0));
+                    let (left, right) = mesh.segments_of_node(borders[side / 2]);
+                    let j = [left, right][side % 2];
+                    read(own.mean_moment.start + j, -mesh.moment_weight(0));
                 } else if row < places.strains {
                     let cell = row - places.forces;
-                    read(own.mean_force.start + cell / k, -1.0 / k as f64);
+                    if !mesh.is_gap(cell) {
+                        read(own.mean_force.start + mesh.segment_of(cell), -1.0 / k as f64);
+                    }
                 } else {
                     of_strain[row - places.strains].push((column, chain.parts.len()));
                     sweep.parts.push(Reading {

@@ -51,6 +51,15 @@ pub struct MeshedAttachment {
 }
 
 impl MeshedAttachment {
+    /// Moves it to a mesh in which its first node and the first attachment have other numbers.
+    pub(super) fn shift(&mut self, nodes: usize, number: usize) {
+        self.number += number;
+        self.node += nodes;
+        self.beyond.0 += nodes;
+        self.beyond.1 += nodes;
+        self.cells.iter_mut().for_each(|(cell, _)| *cell += nodes);
+    }
+
     /// Attachments of a model, ordered by place, and the masses of the nodes [kg], from the beam lengths [m] of the nodes and from the
     /// attachments.
     pub fn all(

@@ -100,6 +100,12 @@ impl MeshedBody {
         bodies.map(body).collect()
     }
 
+    /// Moves it to a mesh in which its first node and the first attachment have other numbers.
+    pub(super) fn shift(&mut self, nodes: usize, number: usize) {
+        self.number += number;
+        (self.node, self.first) = (self.node + nodes, self.first + nodes);
+    }
+
     /// Cells of the body with their weights.
     pub fn cells(&self) -> impl Iterator<Item = (usize, f64)> {
         (self.first..).zip(self.weights).filter(|(_, weight)| *weight != 0.0)

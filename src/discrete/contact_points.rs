@@ -40,7 +40,7 @@ impl ContactPoint {
                 let reach = match contact.follows_section {
                     // of the higher section beside a node the edge touches
                     true if share == 0.0 || share == 1.0 => sections.farthest_fiber[place as usize],
-                    true => model.section_of(node / mesh.cells_per_segment).farthest_fiber(),
+                    true => model.section_of(mesh.segment_of(node)).farthest_fiber(),
                     false => contact.reach,
                 };
                 all.push(Self {
@@ -59,6 +59,12 @@ impl ContactPoint {
         }
         all.sort_by_key(|one| one.node);
         all
+    }
+
+    /// Moves it to a mesh in which its first node and the first contact have other numbers.
+    pub(super) fn shift(&mut self, nodes: usize, number: usize) {
+        self.number += number;
+        self.node += nodes;
     }
 
     fn between<T: Scalar>(&self, values: &[Planar<T>]) -> Planar<T> {

@@ -101,13 +101,14 @@ impl MonitoredValues {
     pub fn new(system: &System, now: &TimeData, t: f64, w: CompleteState) -> Self {
         let w = &*w;
         let mut g = Self { t, ..Self::default() };
-        let last = system.mesh.nodes - 1;
+        let beam = &system.mesh.beams[0];
+        let last = beam.nodes.end - 1;
         let mut set = |which: MonitoredQuantity, moving: Moving| g.moving[which as usize] = moving;
         set(MonitoredQuantity::Tip1, [w.motion.u[last].x, w.motion.v[last].x]);
         set(MonitoredQuantity::Tip3, [w.motion.u[last].z, w.motion.v[last].z]);
         set(
             MonitoredQuantity::Angle,
-            [tip_angle(system, now, w), tip_angle_rate(system, now, w)],
+            [tip_angle(system, now, w, 0), tip_angle_rate(system, now, w)],
         );
         let (a, b) = (last / 2, last.div_ceil(2));
         set(
@@ -119,12 +120,18 @@ impl MonitoredValues {
         );
         set(MonitoredQuantity::Largest1, largest(&w.motion, 0));
         set(MonitoredQuantity::Largest3, largest(&w.motion, 1));
-        (g.deflection, g.moved) = moved(w);
+        (g.deflection, g.moved) = moved(system, w);
         let (strain, node) = evaluate::largest_strain(system, now, w);
         g.strained = node;
         g.moving[MonitoredQuantity::Strain as usize] = [
             strain,
-            strain_rate(now, node, last, system.sections.fiber_of_curvature[node], w),
+            strain_rate(
+                now,
+                node,
+                system.mesh.nodes - 1,
+                system.sections.fiber_of_curvature[node],
+                w,
+            ),
         ];
         g.moving[MonitoredQuantity::Outermost as usize] = nonlinear::outermost(system, w);
         g.moving[MonitoredQuantity::Depth as usize] = contact_points::deepest(system, w);
@@ -232,12 +239,14 @@ fn largest(motion: &Motion<f64>, axis: usize) -> Moving {
 }
 
 /// Largest transverse deflection and largest displacement of a node relative to the root [m].
-fn moved(w: &Workspace<f64>) -> (f64, f64) {
+fn moved(system: &System, w: &Workspace<f64>) -> (f64, f64) {
     let (mut across, mut squared) = (0.0_f64, 0.0_f64);
-    for u in &w.motion.u {
-        let way = *u - w.motion.u[0];
-        across = across.max(way.x.abs());
-        squared = squared.max(way.squared());
+    for beam in &system.mesh.beams {
+        for u in &w.motion.u[beam.nodes.clone()] {
+            let way = *u - w.motion.u[beam.nodes.start];
+            across = across.max(way.x.abs());
+            squared = squared.max(way.squared());
+        }
     }
     (across, squared.sqrt())
 }
@@ -251,20 +260,21 @@ fn bent(system: &System, now: &TimeData, w: &Workspace<f64>) -> (f64, usize) {
 
 /// Rate of the tip's angle [rad/s], from its last cell and half a cell of the end's curvature.
 fn tip_angle_rate(system: &System, now: &TimeData, w: &Workspace<f64>) -> f64 {
-    let last = system.mesh.nodes - 1;
+    let tip = system.mesh.beams[0].ends()[1];
+    let last = tip.node;
     if system.model.kinematics == Kinematics::Bar {
         return 0.0;
     }
-    let curvature_rate = match now.ends[1].slope {
-        Some(_) => w.shape.kappa_rate[last],
-        None => {
+    let curvature_rate = match now.ends[1].turns() {
+        true => w.shape.kappa_rate[last],
+        false => {
             let given = now.ends[1].moment.rate / system.sections.bending[last];
             let bent = relative_stiffness(system, now, w, last);
             let alpha_rate = given + bent * now.rest_curvature_rate(last);
             relaxation::curvature_rate(system, now, w, last, alpha_rate, bent)
         }
     };
-    w.shape.angle_rate[last - 1] - 0.5 * system.mesh.lengths[last - 1] * curvature_rate
+    w.shape.angle_rate[tip.cell] - 0.5 * system.mesh.lengths[tip.cell] * curvature_rate
 }
 
 /// Rate of the largest fibre strain at its node [1/s].

@@ -11,6 +11,7 @@ pub mod extrema;
 pub mod fluid_mesh;
 pub mod initial_angles;
 pub mod injected_volume;
+pub mod joints;
 pub mod layout;
 pub mod ledger;
 pub mod mesh;
@@ -26,6 +27,7 @@ mod smooth_parts;
 pub mod sorted_links;
 pub mod start;
 pub mod statics;
+pub mod structure;
 pub mod time_data;
 pub mod valve_tangents;
 pub mod velocity_jump;
@@ -33,7 +35,6 @@ pub mod waves;
 pub mod workspace;
 
 use crate::case::schema::{Case, Effect};
-use crate::case::spans;
 use crate::error::{Code, Result, Violation};
 use crate::functions::Signal;
 use crate::model::loads::LoadKind;
@@ -44,12 +45,14 @@ pub use attached::MeshedAttachment;
 pub use bodies::MeshedBody;
 pub use contact_points::ContactPoint;
 pub use fluid_mesh::FluidMesh;
+pub use joints::MeshJoints;
 pub use layout::Layout;
 pub use mesh::BeamMesh;
 pub use quantities::MeshProbe;
 pub use sampled_load::SampledLoad;
 pub use sections::MeshSections;
 pub use statics::Statics;
+use structure::BeamParts;
 pub use time_data::TimeData;
 pub use valve_tangents::ValveTangents;
 pub use workspace::{CompleteState, Workspace};
@@ -65,6 +68,8 @@ pub struct System {
     pub fluid: Option<FluidMesh>,
     /// Unknowns and equations.
     pub layout: Layout,
+    /// Joints of a structure.
+    pub joints: MeshJoints,
     /// Sections of cells and nodes.
     pub sections: MeshSections,
     /// Distributed loads, sampled.
@@ -81,6 +86,8 @@ pub struct System {
     pub probes: Vec<MeshProbe>,
     /// Masses of the nodes [kg].
     pub masses: Vec<f64>,
+    /// Masses of the nodes with those that follow them, of which the own mass is 0 [kg].
+    pub masses_in_motion: Vec<f64>,
     /// Lengths over which mass and surroundings act on the nodes [m].
     pub lengths: Vec<f64>,
     /// True if only loads, ends and sections act on nodes: the beam has no surroundings, rotating frame, attachments
@@ -161,7 +168,7 @@ impl System {
         let l = &self.layout;
         let mut masses = vec![0.0; l.len];
         for (node, unknown, _) in l.lines.iter().flat_map(layout::LineLayout::unknowns) {
-            masses[unknown] = self.masses[node] * l.scales[unknown] / l.row_scales[unknown];
+            masses[unknown] = self.masses_in_motion[node] * l.scales[unknown] / l.row_scales[unknown];
         }
         masses
     }
@@ -295,27 +302,15 @@ impl System {
     }
 
     fn from_model(case: &Case, model: Model) -> Self {
-        let lengths = spans::segment_lengths(case);
-        let jumps = smooth_parts::jumps(case, &model, &lengths);
-        let order = if smooth_parts::is_steep(&model) {
-            2
-        } else {
-            case.mesh.order()
-        };
-        let mesh = BeamMesh::new(model.length, lengths, case.mesh.cells_per_segment)
-            .divided(&jumps)
-            .of_order(order);
+        let parts = BeamParts::new(case, &model);
+        let mesh = parts.mesh;
         let fluid = model
             .wet
             .as_ref()
             .map(|wet| FluidMesh::new(wet, model.cells_per_bladder(case)));
-        let layout = Layout::new(&model, &mesh, fluid.as_ref());
-        let sections = MeshSections::new(&model, &mesh);
-        let loads: Vec<_> = model
-            .loads
-            .iter()
-            .map(|load| SampledLoad::new(load, &model, &sections, &mesh))
-            .collect();
+        let joints = MeshJoints::new(&model, &mesh);
+        let layout = Layout::new(&model, &mesh, &joints, fluid.as_ref());
+        let loads = parts.loads;
         let has_moments = loads
             .iter()
             .any(|l| matches!(l.kind, LoadKind::MomentX | LoadKind::MomentZ))
@@ -323,31 +318,34 @@ impl System {
         let followed = loads
             .iter()
             .any(|l| matches!(l.kind, LoadKind::Normal | LoadKind::Tangential));
-        let mut lengths = mesh.node_lengths.clone();
-        mesh.lump(&mut lengths);
-        let (attached, masses) = MeshedAttachment::all(&model.attachments, &sections, &mesh, &lengths);
-        let bodies = MeshedBody::all(&model.attachments, &model.ends, model.kinematics, &mesh);
-        let touching = ContactPoint::all(&model, &sections, &mesh);
         let damped = model.section.axial_damping_time > 0.0 || model.section.bending_damping_time > 0.0;
-        let foundation = sampled_load::foundation(&model, &mesh);
-        let nothing_attached =
-            !followed && foundation.is_empty() && attached.is_empty() && bodies.is_empty() && touching.is_empty();
+        let nothing_attached = !followed
+            && parts.foundation.is_empty()
+            && parts.attached.is_empty()
+            && parts.bodies.is_empty()
+            && parts.touching.is_empty();
         let surrounded = model.surroundings.is_some() || model.frame.is_some();
+        let mut masses_in_motion = parts.masses.clone();
+        for tie in &joints.ties {
+            masses_in_motion[tie.to] += std::mem::take(&mut masses_in_motion[tie.node]);
+        }
         Self {
             stands_alone: nothing_attached && !model.section.resists_motion() && !surrounded,
             model,
-            probes: MeshProbe::all(case, &mesh, &sections),
+            probes: parts.probes,
             mesh,
             fluid,
             layout,
-            sections,
+            joints,
+            sections: parts.sections,
             loads,
-            attached,
-            bodies,
-            touching,
-            foundation,
-            masses,
-            lengths,
+            attached: parts.attached,
+            bodies: parts.bodies,
+            touching: parts.touching,
+            foundation: parts.foundation,
+            masses: parts.masses,
+            masses_in_motion,
+            lengths: parts.lengths,
             followed,
             has_moments,
             damped,

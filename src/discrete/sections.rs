@@ -121,6 +121,46 @@ pub fn in_series([left, right]: [f64; 2], shares: [f64; 2]) -> f64 {
 }
 
 impl MeshSections {
+    /// Appends the sections of another beam behind an empty cell; `nodes` is the number of nodes before.
+    pub(super) fn append(&mut self, next: Self, nodes: usize) {
+        // the empty cell has neither stiffness nor mass
+        let cells = [
+            (&mut self.axial, next.axial),
+            (&mut self.bending_of_cells, next.bending_of_cells),
+            (&mut self.shear, next.shear),
+            (&mut self.axial_viscosity, next.axial_viscosity),
+            (&mut self.shear_viscosity, next.shear_viscosity),
+            (&mut self.rotary, next.rotary),
+        ];
+        for (own, next) in cells {
+            own.push(0.0);
+            own.extend(next);
+        }
+        if !(self.offset.is_empty() && next.offset.is_empty()) {
+            self.offset.resize(nodes, 0.0);
+            self.offset.extend(next.offset);
+            self.offset.resize(self.axial.len(), 0.0);
+        }
+        if !(self.laws.is_empty() && next.laws.is_empty()) {
+            debug_assert_eq!(self.laws.len(), nodes, "laws are given for all beams or none");
+        }
+        for (own, next) in [
+            (&mut self.bending, next.bending),
+            (&mut self.farthest_fiber, next.farthest_fiber),
+            (&mut self.fiber_of_curvature, next.fiber_of_curvature),
+            (&mut self.bending_viscosity, next.bending_viscosity),
+            (&mut self.mass, next.mass),
+            (&mut self.weighing, next.weighing),
+        ] {
+            own.extend(next);
+        }
+        self.bending_beside.extend(next.bending_beside);
+        self.laws.extend(next.laws);
+        self.offset_borders
+            .extend(next.offset_borders.iter().map(|node| node + nodes));
+        self.ambient.extend(next.ambient);
+    }
+
     /// Rotation between the midpoints of a cell and the next, at a place `s` of the way: its share before the place, and the compliance of
     /// both sides in parallel [rad/(N m)]. On each side it is uniform.
     pub fn turning(&self, cell: usize, s: f64, mesh: &BeamMesh) -> (f64, f64) {

@@ -19,6 +19,8 @@ pub struct EndData {
     pub u: [Option<Jet>; 2],
     /// Prescribed slope, if the slope is prescribed.
     pub slope: Option<Jet>,
+    /// Number of the angle of a joint that the end has, among those of the structure.
+    pub joint: Option<usize>,
     /// Prescribed moment (zero if the slope is prescribed).
     pub moment: Jet,
     /// Dead force on the end [N].
@@ -44,6 +46,14 @@ pub struct Frame {
     root: Jet,
     /// Tip less root.
     lean: Jet,
+}
+
+impl EndData {
+    /// True if the angle of the end does not follow from its moment: it is given, or that of a joint.
+    #[inline]
+    pub fn turns(&self) -> bool {
+        self.slope.is_some() || self.joint.is_some()
+    }
 }
 
 impl Frame {
@@ -96,8 +106,10 @@ pub struct TimeData {
     pub turns: AngleUnwrapping,
     /// Tangents of valves, for derivatives.
     pub tangents: ValveTangents,
-    /// Root and tip.
-    pub ends: [EndData; 2],
+    /// Root and tip of each beam.
+    pub ends: Vec<EndData>,
+    /// Nodes of the ends, ascending.
+    end_nodes: Vec<usize>,
     /// Force per length at each node [N/m].
     pub force: Vec<Planar<f64>>,
     /// First moment per length in each cell [N].
@@ -148,7 +160,14 @@ impl TimeData {
             cj: 0.0,
             turns: AngleUnwrapping::default(),
             tangents: ValveTangents::default(),
-            ends: [EndData::default(); 2],
+            ends: {
+                let of = |end: usize| EndData {
+                    joint: system.joints.angle_of(end),
+                    ..EndData::default()
+                };
+                (0..system.model.ends.len()).map(of).collect()
+            },
+            end_nodes: system.mesh.ends().map(|(_, end)| end.node).collect(),
             force: vec![Planar::default(); system.mesh.nodes],
             moment: vec![Planar::default(); system.mesh.cells],
             follower: vec![Planar::default(); if system.followed { system.mesh.nodes } else { 0 }],
@@ -173,11 +192,7 @@ impl TimeData {
     /// Given values at a node, if it is an end.
     #[inline]
     pub fn end(&self, node: usize) -> Option<&EndData> {
-        match node {
-            0 => Some(&self.ends[0]),
-            _ if node + 1 == self.force.len() => Some(&self.ends[1]),
-            _ => None,
-        }
+        self.end_nodes.binary_search(&node).ok().map(|k| &self.ends[k])
     }
 
     /// Rest curvature of the beam at a node [1/m].
@@ -195,7 +210,10 @@ impl TimeData {
     /// Frame of the transverse (0) or axial (1) displacements.
     #[inline]
     pub fn frame(&self, axis: usize) -> Option<Frame> {
-        Frame::through(self.ends[0].u[axis], self.ends[1].u[axis])
+        match self.ends[..] {
+            [root, tip] => Frame::through(root.u[axis], tip.u[axis]),
+            _ => None,
+        }
     }
 
     /// Motion of the transverse (0) or axial (1) frame at a fraction of the length, 0 at the root and 1 at the tip; zero without driven

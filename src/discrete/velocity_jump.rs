@@ -39,6 +39,9 @@ pub fn velocities(w: &Workspace<f64>) -> Nodal {
 /// the position of the beam.
 pub fn spread(system: &System, [before, after]: [&TimeData; 2], w: &Workspace<f64>) -> Option<Nodal> {
     let l = &system.layout;
+    if system.model.structure.is_some() {
+        return None; // its driven ends do not jump
+    }
     // the surrounding fluid couples both directions of a node, rotating sections couple nodes
     let added = system.model.section.ambient.added_mass > 0.0;
     let coupled = system.turns_with_its_line() || added || turned(system).is_some();
@@ -154,7 +157,7 @@ fn added(system: &System, w: &Workspace<f64>, node: usize) -> Matrix2<f64> {
 
 /// `J/h n nᵀ` of a cell.
 fn coupling(system: &System, w: &Workspace<f64>, c: usize) -> Matrix2<f64> {
-    if !system.turns_with_its_line() || system.model.kinematics == Kinematics::Bar {
+    if !system.turns_with_its_line() || system.model.kinematics == Kinematics::Bar || system.mesh.is_gap(c) {
         return Matrix2::zeros();
     }
     let mut inertia = system.sections.rotary[c] / system.mesh.lengths[c];

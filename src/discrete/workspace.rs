@@ -1,6 +1,7 @@
 //! Intermediate quantities of one evaluation, stage by stage; allocated once, for each scalar type.
 
 use super::System;
+use super::joints::JointMotion;
 use super::readings::FourthOrderReadings;
 use super::residual::fourth_order;
 use crate::model::Kinematics;
@@ -59,6 +60,8 @@ pub struct BeamShape<T> {
     pub side_curvature: Vec<[T; 2]>,
     /// `d kappa/dt` [1/(m s)].
     pub kappa_rate: Vec<T>,
+    /// Rotation of the joints of a structure.
+    pub joints: JointMotion<T>,
     /// Rotation of sections that shear.
     pub sections: Sections<T>,
 }
@@ -321,6 +324,7 @@ impl<T: Scalar> Workspace<T> {
                 kappa: zeros(n),
                 side_curvature: vec![[T::zero(); 2]; system.sections.offset_borders.len()],
                 kappa_rate: zeros(n),
+                joints: JointMotion::new(&system.joints),
                 sections: Sections {
                     angle: zeros(sheared),
                     acceleration: zeros(sheared),

@@ -61,7 +61,7 @@ pub fn numbers_with(case: &Case, model: &Model, mathieu: Option<&MathieuTongue>)
     put("slenderness", l / (2.0 * s.half_height));
     let solid_time = (m * l.powi(4) / ei).sqrt();
     put("t_s_s", solid_time);
-    let first = first_wave_number(&model.ends);
+    let first = first_wave_number(model.root_and_tip());
     if !model.relaxation.is_empty() {
         put("instantaneous_modulus_pa", s.stiffening * case.beam.young_modulus_pa);
     }

@@ -27,6 +27,7 @@ pub mod scales;
 mod signals;
 pub mod storage;
 pub mod strain_energy;
+pub mod structure;
 mod supports;
 pub mod surroundings;
 mod vessels;
@@ -58,6 +59,7 @@ pub use scales::Scales;
 pub use signals::each_signal;
 pub use storage::{LumpedKind, LumpedNetwork, Storage};
 pub use strain_energy::StrainPotential;
+pub use structure::Structure;
 pub use surroundings::AmbientFluid;
 pub use wet::{ROWS, SegmentLaw, Wet};
 
@@ -81,8 +83,10 @@ pub struct Model {
     pub kinematics: Kinematics,
     /// Effects that are simulated.
     pub effects: EffectSet,
-    /// Conditions at root and tip.
-    pub ends: [ResolvedEnd; 2],
+    /// Conditions at root and tip of each beam; ends with a joint are free.
+    pub ends: Vec<ResolvedEnd>,
+    /// Pieces of a structure and its joints; none for a single beam.
+    pub structure: Option<Structure>,
     /// Distributed loads.
     pub loads: Vec<DistributedLoad>,
     /// Point masses, springs, dashpots and forces.
@@ -121,7 +125,7 @@ impl Model {
         let section = mean_section(case);
         let network = ResolvedNetwork::from_case(case)?;
         let mut effects = EffectSet::whole(case, network.as_ref());
-        if case.effects != Effects::Full {
+        if case.effects != Effects::Full && !case.is_structure() {
             let whole = case.network_bladders().zip(network.clone());
             let whole = whole.map(|(bladders, network)| Wet::new(case, bladders, &section, network, &effects));
             effects = EffectSet::choose(
@@ -192,14 +196,17 @@ impl Model {
             .iter()
             .flat_map(|load| DistributedLoad::resolve(load, &section))
             .collect();
-        let ends = [case.ends.root.resolve(), case.ends.tip.resolve()];
-        let scales = Scales::estimate(case, &section, wet.as_ref());
+        let structure = Structure::from_case(case, &effects);
+        let scales = match &structure {
+            None => Scales::estimate(case, &section, wet.as_ref()),
+            Some(structure) => structure.scales(wet.as_ref()),
+        };
         if let Some(wet) = &mut wet {
             wet.reduce(&effects);
         }
         let kinematics = Kinematics::from_effects(&effects);
         let segments = spans::segments(case);
-        Self {
+        let single = Self {
             section,
             sections: Section::of_segments(case, &segments),
             within: Section::within_segments(case, &segments),
@@ -208,7 +215,8 @@ impl Model {
             formulation: case.formulation,
             kinematics,
             effects,
-            ends,
+            ends: vec![case.ends.root.resolve(), case.ends.tip.resolve()],
+            structure,
             loads,
             attachments: AttachedBody::all(case),
             foundation: case
@@ -224,7 +232,28 @@ impl Model {
             wet,
             scales,
             still: false,
-        }
+        };
+        single.joined()
+    }
+
+    /// With the ends, loads, attachments and contacts of all beams of its structure.
+    fn joined(mut self) -> Self {
+        let Some(structure) = &self.structure else {
+            return self;
+        };
+        let models = || structure.beams.iter().map(|beam| &beam.model);
+        self.ends = models().flat_map(|model| model.ends.clone()).collect();
+        self.loads = models().flat_map(|model| model.loads.clone()).collect();
+        self.attachments = models().flat_map(|model| model.attachments.clone()).collect();
+        self.contacts = models().flat_map(|model| model.contacts.clone()).collect();
+        self
+    }
+
+    /// Conditions at root and tip of the only beam, or of the first one.
+    pub fn root_and_tip(&self) -> &[ResolvedEnd; 2] {
+        self.ends
+            .first_chunk()
+            .unwrap_or_else(|| unreachable!("a beam has two ends"))
     }
 
     /// Section of a segment.

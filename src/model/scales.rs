@@ -186,6 +186,22 @@ impl DriveScales {
 }
 
 impl Scales {
+    /// The larger of both scales, each.
+    pub fn larger(&self, other: &Self) -> Self {
+        Self {
+            transverse: self.transverse.max(other.transverse),
+            axial: self.axial.max(other.axial),
+            transverse_rate: self.transverse_rate.max(other.transverse_rate),
+            axial_rate: self.axial_rate.max(other.axial_rate),
+            transverse_force: self.transverse_force.max(other.transverse_force),
+            axial_force: self.axial_force.max(other.axial_force),
+            moment: self.moment.max(other.moment),
+            force: self.force.max(other.force),
+            pressure: self.pressure.max(other.pressure),
+            frequency: self.frequency.max(other.frequency),
+        }
+    }
+
     /// Estimates all sizes: motions by loads from the linear cantilever, pressures by forces from the sealed bladder,
     /// deflections by pressures. Each has a lower limit.
     pub fn estimate(case: &Case, section: &Section, wet: Option<&Wet>) -> Self {

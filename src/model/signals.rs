@@ -82,7 +82,7 @@ impl Model {
 
 /// Visits all signals: of ends, loads, attachments, a stream, a frame, valves, ports, sources and pumps.
 pub fn each_signal(
-    ends: &[ResolvedEnd; 2],
+    ends: &[ResolvedEnd],
     loads: &[DistributedLoad],
     attachments: &[AttachedBody],
     around: Option<&AmbientFluid>,

@@ -20,12 +20,14 @@ mod span_sections;
 mod spans;
 mod start;
 mod strength;
+mod structures;
 mod time;
 mod tubes;
 mod vessels;
 
 use super::faults::Violations;
 use super::schema::Case;
+use super::structure;
 use crate::error::{Code, Violation};
 
 /// A group of rules.
@@ -72,6 +74,10 @@ const RULES: &[(Rule, &[&str])] = &[
         spans::check,
         &["beam", "bladders", "fluid", "tubes", "mesh", "spans", "surroundings"],
     ),
+    (
+        structures::check,
+        &["beam", "bladders", "mesh", "spans", "beams", "joints", "start", "ends"],
+    ),
 ];
 
 /// Applies all rules to a case, except those that compare a broken section with others.
@@ -84,6 +90,9 @@ pub fn check(case: &Case, broken: &[String], faults: &mut Violations) {
         .filter(|(_, reads)| !broken.iter().any(|section| reads.contains(&section.as_str())))
     {
         rule(case, faults);
+    }
+    if case.is_structure() {
+        faults.rename(|pointer| structure::written_span(case, pointer));
     }
 }
 

@@ -119,6 +119,16 @@ pub struct Ends {
     pub tip: End,
 }
 
+impl Default for Ends {
+    fn default() -> Self {
+        let free = || End::Free(EndConditions::default());
+        Self {
+            root: free(),
+            tip: free(),
+        }
+    }
+}
+
 /// Exactly one of each pair {u1, force x}, {slope, moment}, {u3, force z}.
 /// An end with given forces may add follower forces, which turn with the end angle.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]

@@ -24,6 +24,7 @@ mod network;
 mod numerics;
 mod probes;
 mod spans;
+mod structures;
 mod surroundings;
 mod viscoelasticity;
 
@@ -37,10 +38,11 @@ pub use network::*;
 pub use numerics::*;
 pub use probes::*;
 pub use spans::*;
+pub use structures::*;
 pub use surroundings::*;
 pub use viscoelasticity::*;
 
-/// A case: one beam, its bladders and tubes, what is done to it, and how it is to be solved.
+/// A case: a beam or a structure of beams, its bladders and tubes, what is done to it, and how it is to be solved.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 #[schemars(title = "slcbeam case")]
@@ -74,6 +76,15 @@ pub struct Case {
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     #[schemars(length(max = 1000))]
     pub spans: Vec<Span>,
+    /// Beams of a structure, which share the network; `beam` and `bladders` then have the values that they have in common. Absent: one
+    /// beam.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    #[schemars(length(max = 1000))]
+    pub beams: Vec<PlacedBeam>,
+    /// Joints of the beams.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    #[schemars(length(max = 1000))]
+    pub joints: Vec<Joint>,
     /// Default properties of tubes.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub tubes: Option<TubeDefaults>,
@@ -101,7 +112,7 @@ pub struct Case {
     /// Rotation of the axes of the case. Absent: axes at rest.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub rotating_frame: Option<RotatingFrame>,
-    /// Conditions at the root (theta = 0) and the tip (theta = length).
+    /// Conditions at the root (theta = 0) and the tip (theta = length); those of a structure are in its beams.
     pub ends: Ends,
     /// State at t = 0; what is not given is zero.
     #[serde(default)]
@@ -213,6 +224,9 @@ impl Case {
         case.time.fields_interval_s = Some(self.time.fields_interval());
         case.time.window_s = Some(self.time.window());
         case.mesh.segments = Some(self.segments());
+        if self.is_structure() {
+            case.spans.clear();
+        }
         case.effects_tolerance = Some(self.effects_tolerance());
         case
     }

@@ -8,12 +8,13 @@ mod wet;
 
 use std::ops::Range;
 
+use super::joints::MeshJoints;
 use super::{BeamMesh, FluidMesh};
 use crate::case::schema::Effect;
 use crate::case::wiring::bladder_label;
 use crate::model::Model;
 
-pub use solid::{LineLayout, Relaxation, SectionRotation};
+pub use solid::{JointUnknowns, LineLayout, Relaxation, SectionRotation};
 pub use wet::{CouplingUnknowns, NetworkUnknowns};
 
 /// Blocks of unknowns, in this order, and properties of each unknown.
@@ -23,6 +24,8 @@ pub struct Layout {
     pub lines: [LineLayout; 2],
     /// Rotation of sections that shear.
     pub turning: SectionRotation,
+    /// Angles of joints.
+    pub joints: JointUnknowns,
     /// Relaxed strains of the solid.
     pub relaxation: Relaxation,
     /// Coupling variables of beam and bladders.
@@ -47,6 +50,7 @@ pub struct Layout {
 enum Name {
     Node(&'static str, usize),
     Cell(&'static str, usize),
+    Joint(&'static str, usize),
     Relaxed(&'static str, usize, usize),
     Segment(&'static str, usize),
     Area(usize, usize),
@@ -63,10 +67,20 @@ enum Name {
 
 impl Layout {
     /// Creates the unknowns of a model on a mesh.
-    pub fn new(model: &Model, mesh: &BeamMesh, fluid: Option<&FluidMesh>) -> Self {
+    pub fn new(model: &Model, mesh: &BeamMesh, joints: &MeshJoints, fluid: Option<&FluidMesh>) -> Self {
         let mut build = Builder::default();
         let lines = LineLayout::both(model, mesh, &mut build);
+        for (node, axis) in joints.led() {
+            let line: &LineLayout = &lines[axis];
+            for unknown in [Some(line.u.start), line.v.as_ref().map(|v| v.start)]
+                .into_iter()
+                .flatten()
+            {
+                build.differential[unknown + node - line.free.start] = false;
+            }
+        }
         let turning = SectionRotation::new(model, mesh, &mut build);
+        let joints_of_structure = JointUnknowns::new(model, joints, &mut build);
         let relaxation = Relaxation::new(model, mesh, &mut build);
         let wet = model.wet.as_ref().zip(fluid);
         let coupling = wet.map_or_else(Default::default, |(wet, _)| {
@@ -78,6 +92,7 @@ impl Layout {
         Self {
             lines,
             turning,
+            joints: joints_of_structure,
             relaxation,
             coupling,
             network,
@@ -99,7 +114,8 @@ impl Layout {
     /// Every displacement or section angle, with its velocity if that is an unknown.
     pub fn moved(&self) -> impl Iterator<Item = (usize, Option<usize>)> + '_ {
         let nodes = self.lines.iter().flat_map(LineLayout::unknowns).map(|(_, u, v)| (u, v));
-        nodes.chain(self.turning.unknowns())
+        let joints = self.joints.angle.clone().zip(self.joints.rate.iter().copied());
+        nodes.chain(self.turning.unknowns()).chain(joints)
     }
 
     /// True if positions and velocities of two states are equal.
@@ -159,6 +175,7 @@ impl Layout {
         let bladder = |b: usize| bladder_label(b, self.per_row);
         match self.names[unknown] {
             Name::Node(what, node) => format!("{what} of node {node}"),
+            Name::Joint(what, joint) => format!("{what} of joint {}", joint + 1),
             Name::Cell(what, cell) => format!("{what} of cell {}", cell + 1),
             Name::Relaxed(what, branch, place) => format!("{what} {place} in branch {} of relaxation", branch + 1),
             Name::Segment(what, segment) => format!("{what} of segment {}", segment + 1),

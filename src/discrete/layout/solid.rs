@@ -6,6 +6,7 @@ use super::{Builder, Name};
 use crate::case::Translation;
 use crate::case::schema::Effect;
 use crate::discrete::BeamMesh;
+use crate::discrete::joints::{JointAngle, MeshJoints};
 use crate::model::{Kinematics, Model};
 
 /// Transverse or axial motion of the nodes.
@@ -26,6 +27,15 @@ pub struct SectionRotation {
     pub angle: Range<usize>,
     /// Rates of the section angles; none without rotary inertia.
     pub rate: Option<Range<usize>>,
+}
+
+/// Angles of the joints of a structure.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct JointUnknowns {
+    /// Angles.
+    pub angle: Range<usize>,
+    /// Rate of each angle; none for an angle without inertia.
+    pub rate: Vec<Option<usize>>,
 }
 
 /// Relaxed curvatures, stretches and shear strains of a solid, branch by branch.
@@ -60,8 +70,13 @@ impl LineLayout {
     /// Transverse and axial motion; displacements of both precede the velocities.
     pub(super) fn both(model: &Model, mesh: &BeamMesh, build: &mut Builder) -> [Self; 2] {
         let driven = |motion: &Translation| usize::from(matches!(motion, Translation::Displacement(_)));
-        let [root, tip] = &model.ends;
-        let free = |root: &Translation, tip: &Translation| driven(root)..mesh.nodes - driven(tip);
+        let [root, tip] = model.root_and_tip();
+        let structure = model.structure.is_some();
+        // in a structure, given motion has equations of its own
+        let free = |root: &Translation, tip: &Translation| match structure {
+            true => 0..mesh.nodes,
+            false => driven(root)..mesh.nodes - driven(tip),
+        };
         let bar = model.kinematics == Kinematics::Bar;
         let across = if bar {
             0..0
@@ -124,7 +139,7 @@ impl SectionRotation {
         let mut cells = |what: &'static str, size: f64, row: f64, differential: bool| {
             build.block(|build| {
                 for cell in 0..mesh.cells {
-                    build.push(Name::Cell(what, cell), size, row, differential);
+                    build.push(Name::Cell(what, cell), size, row, differential && !mesh.is_gap(cell));
                 }
             })
         };
@@ -139,6 +154,33 @@ impl SectionRotation {
                 )
             }),
         }
+    }
+}
+
+impl JointUnknowns {
+    /// Index of the moment balance of an angle.
+    #[inline]
+    pub fn moment(&self, angle: usize) -> usize {
+        self.rate[angle].unwrap_or(self.angle.start + angle)
+    }
+
+    pub(super) fn new(model: &Model, joints: &MeshJoints, build: &mut Builder) -> Self {
+        let s = &model.scales;
+        let length = model.structure.iter().flat_map(|structure| &structure.beams);
+        let length = length.map(|beam| beam.piece.length).fold(model.length, f64::min);
+        let (size, speed) = (s.transverse / length, s.transverse_rate / length);
+        let angle = build.block(|build| {
+            for (k, angle) in joints.angles.iter().enumerate() {
+                let row = if angle.moves { speed } else { s.moment };
+                build.push(Name::Joint("angle [rad]", k), size, row, angle.moves || angle.damped);
+            }
+        });
+        let mut rate = |(k, angle): (usize, &JointAngle)| {
+            let moves = angle.moves;
+            moves.then(|| build.push(Name::Joint("turning [rad/s]", k), speed, s.moment, true))
+        };
+        let rate = joints.angles.iter().enumerate().map(&mut rate).collect();
+        Self { angle, rate }
     }
 }
 

@@ -23,6 +23,7 @@ pub fn compared(system: &System, now: &TimeData, w: CompleteState) -> [f64; 2] {
     };
     let turned = |body: &MeshedBody| body.cells().any(|(cell, _)| cell < 2 || cell + 2 >= mesh.cells);
     if mesh.cells < 2
+        || system.model.structure.is_some()
         || !system.touching.is_empty()
         || system.attached.iter().any(inner)
         || system.bodies.iter().any(turned)

@@ -39,7 +39,7 @@ pub fn flows(
                 -inertia * a.z * (v.z - carried(system, now, w, i)),
             );
         }
-        let held = l.lines.each_ref().map(|line| !line.free.contains(&i));
+        let held = held(system, i);
         if held != [false; 2] {
             let missing = missing(system, w, i, f);
             for axis in (0..2).filter(|&axis| held[axis]) {
@@ -48,9 +48,10 @@ pub fn flows(
             }
         }
         let (arm, arm_rate) = arms(system, w, i);
+        let f = system.in_axes_of_case(i, f);
         add(out, EnergyRate::ImpulseX, f.x);
         add(out, EnergyRate::ImpulseZ, f.z);
-        let turning = if l.inertia {
+        let turning = if l.inertia && system.model.structure.is_none() {
             inertia * (arm_rate.z * v.x - arm_rate.x * carried(system, now, w, i))
         } else {
             0.0
@@ -60,6 +61,7 @@ pub fn flows(
             bending(system, now, &pressure_rate, w, i, out);
         }
     }
+    add(out, EnergyRate::Damping, system.joints.loss(w));
     add(out, EnergyRate::AngularImpulse, attached::torque(system, now, w));
     bodies(system, now, w, out);
     add(out, EnergyRate::Damping, relaxation::energy_and_loss(system, now, w)[1]);
@@ -75,6 +77,7 @@ fn bodies(system: &System, now: &TimeData, w: &Workspace<f64>, out: &mut Rates) 
         let arm = body.at_place(|i| arms(system, w, i).0);
         let arm_rate = body.at_place(|i| arms(system, w, i).1);
         let (momentum, _) = body.momenta(system, w);
+        let [force, momentum] = [force, momentum].map(|one| system.in_axes_of_case(body.node, one));
         add(out, EnergyRate::ImpulseX, -force.x);
         add(out, EnergyRate::ImpulseZ, -force.z);
         let turned = if system.layout.inertia {
@@ -84,6 +87,13 @@ fn bodies(system: &System, now: &TimeData, w: &Workspace<f64>, out: &mut Rates) 
         };
         add(out, EnergyRate::AngularImpulse, torque + turned);
     }
+}
+
+/// Directions in which the motion of a node is given.
+fn held(system: &System, node: usize) -> [bool; 2] {
+    let given = |axis: usize| system.joints.driven.iter().any(|&(_, n, a)| (n, a) == (node, axis));
+    let lines = &system.layout.lines;
+    [0, 1].map(|axis| !lines[axis].free.contains(&node) || given(axis))
 }
 
 /// Reaction of a driven end: residual of a node's momentum balance with its section forces and the external force `force`.
@@ -130,10 +140,10 @@ fn bending(
     let (stretch, stretch_rate) = stretches(i);
     // With a given moment, the curvature follows from it.
     let kappa_rate = match end {
-        Some(e) if e.slope.is_none() && !system.sections.offset.is_empty() => {
+        Some(e) if !e.turns() && !system.sections.offset.is_empty() => {
             eccentric::end_rate(system, now, w, i, pressure_rate(w, i)).unwrap_or(0.0)
         }
-        Some(e) if e.slope.is_none() => {
+        Some(e) if !e.turns() => {
             let bent = relative_stiffness(system, now, w, i);
             let free_rate = bent * (curvature_rate(w, i) + now.rest_curvature_rate(i));
             let mut elastic_rate = e.moment.rate / system.sections.bending[i];
@@ -158,8 +168,9 @@ fn bending(
     let elastic =
         forces.moment[i] + part(&forces.nonlinear_moment) + part(&forces.relaxing_moment) + part(&forces.offset_moment);
     let moment = elastic + forces.viscous_moment[i];
-    if let Some(e) = end {
-        let (sign, cell) = if i == 0 { (1.0, 0) } else { (-1.0, last - 1) };
+    // moments of a joint are internal
+    if let Some((e, (_, place))) = end.filter(|end| end.joint.is_none()).zip(mesh.end_at(i)) {
+        let (sign, cell) = (-place.outward, place.cell);
         let angle_rate = match e.slope {
             Some(slope) => slope.rate,
             None => w.shape.angle_rate[cell] + sign * 0.5 * mesh.lengths[cell] * kappa_rate,
@@ -264,10 +275,13 @@ pub fn energies(system: &System, now: &TimeData, w: &Workspace<f64>) -> StoredEn
             e.kinetic += kinetic;
             e.rotary += rotary;
         }
+        e.rotary += system.joints.energies(w)[1];
     }
     for (c, &h) in mesh.lengths.iter().enumerate() {
         if system.model.effects.has(Effect::AxialStretch) {
-            e.axial += if mesh.fourth {
+            e.axial += if mesh.is_gap(c) {
+                0.0
+            } else if mesh.fourth {
                 fourth_order::of_stretch(system, w, c)
             } else {
                 0.5 * h * w.forces.normal[c] * w.forces.normal[c] / system.sections.axial[c]
@@ -303,6 +317,31 @@ fn spin(system: &System, w: &Workspace<f64>, c: usize) -> f64 {
     system.sections.rotary[c] * factor * turning_rate(system, w, c)
 }
 
+impl System {
+    /// Position of a node in the axes of the case [m].
+    pub fn position(&self, w: &Workspace<f64>, node: usize) -> Planar<f64> {
+        let along = Planar {
+            x: 0.0,
+            z: self.mesh.node_coordinate(node),
+        };
+        let own = along + w.motion.u[node];
+        match &self.model.structure {
+            None => own,
+            Some(structure) => {
+                structure.beams[self.mesh.beam_of_node(node)].piece.origin + self.in_axes_of_case(node, own)
+            }
+        }
+    }
+
+    /// A vector at a node along the axes of the case, from that along the axes of its beam.
+    pub fn in_axes_of_case(&self, node: usize, v: Planar<f64>) -> Planar<f64> {
+        match &self.model.structure {
+            None => v,
+            Some(structure) => structure.beams[self.mesh.beam_of_node(node)].piece.turned(v),
+        }
+    }
+}
+
 /// Moment arms (x, z) of a node's momentum and force about the origin, i.e. its position, and their rates. A small
 /// rotation ε moves a node by (ε θ, -ε g u1), whatever u3 is; the potential of `[E26]` is invariant under this motion.
 pub fn arms(system: &System, w: &Workspace<f64>, i: usize) -> (Planar<f64>, Planar<f64>) {
@@ -311,6 +350,9 @@ pub fn arms(system: &System, w: &Workspace<f64>, i: usize) -> (Planar<f64>, Plan
         z: system.mesh.node_coordinate(i),
     };
     let (u, v) = (w.motion.u[i], w.motion.v[i]);
+    if system.model.structure.is_some() {
+        return (system.position(w, i), system.in_axes_of_case(i, v));
+    }
     match system.model.kinematics {
         Kinematics::Bar | Kinematics::FiniteRotation => (at + u, v),
         Kinematics::SmallRotation => (Planar { x: u.x, ..at }, Planar { x: v.x, z: 0.0 }),
@@ -332,14 +374,18 @@ pub fn momenta(system: &System, now: &TimeData, w: &Workspace<f64>) -> (Planar<f
             z: along,
             ..w.motion.v[i]
         } * mass;
+        let own = system.in_axes_of_case(i, own);
         momentum += own;
         angular += arms(system, w, i).0.cross(own);
     }
     for body in &system.bodies {
         let (own, about) = body.momenta(system, w);
+        let own = system.in_axes_of_case(body.node, own);
         momentum += own;
         angular += body.at_place(|i| arms(system, w, i).0).cross(own) + about;
     }
+    let joints = system.joints.angles.iter().zip(&w.shape.joints.rate);
+    angular += joints.map(|(joint, rate)| joint.inertia * rate).sum::<f64>();
     if system.model.effects.has(Effect::RotaryInertia) {
         let arm = |c: usize| if turned_across(system) { w.shape.d3[c].z } else { 1.0 };
         let cells = (0..mesh.cells).map(|c| mesh.lengths[c] * arm(c) * spin(system, w, c));

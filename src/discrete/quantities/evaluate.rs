@@ -31,7 +31,7 @@ impl Extremes {
             high: place(w.fluid.pressures(), 1.0),
             low: place(w.fluid.pressures(), -1.0),
             closed: system.most_closed(w.fluid.area_changes()),
-            angle: tip_angle(system, now, w),
+            angle: tip_angle(system, now, w, 0),
         }
     }
 }
@@ -67,7 +67,7 @@ impl<'a> StateView<'a> {
 
 impl StateView<'_> {
     fn tip(&self) -> usize {
-        self.system.mesh.nodes - 1
+        self.system.mesh.beams[0].nodes.end - 1
     }
 
     pub(super) fn tip_u1(&self) -> f64 {
@@ -80,7 +80,7 @@ impl StateView<'_> {
 
     /// Angle of the tip, unwrapped to the fixed reference angle.
     pub(super) fn tip_angle(&self) -> f64 {
-        nearest(tip_angle(self.system, self.now, &self.w), self.at.angle)
+        nearest(tip_angle(self.system, self.now, &self.w, 0), self.at.angle)
     }
 
     pub(super) fn max_pressure(&self) -> f64 {
@@ -182,11 +182,15 @@ fn largest_in_tubes(
 
 /// Largest strain of a fibre, `|λ - 1| + |κ| h_s/2`, κ relative to the rest curvature, and its node.
 pub fn largest_strain(system: &System, now: &TimeData, w: &Workspace<f64>) -> (f64, usize) {
-    let last = system.mesh.nodes - 1;
-    (0..=last)
+    let mesh = &system.mesh;
+    (0..mesh.nodes)
         .map(|i| {
+            let stretch = match mesh.end_at(i) {
+                Some((_, end)) => w.shape.stretch[end.cell],
+                None => node_stretch(w, i, mesh.nodes - 1),
+            };
             (
-                (node_stretch(w, i, last) - 1.0).abs()
+                (stretch - 1.0).abs()
                     + (w.curvature()[i] - now.rest_curvature(i)).abs() * system.sections.fiber_of_curvature[i],
                 i,
             )

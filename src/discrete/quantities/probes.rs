@@ -152,6 +152,14 @@ fn entries(system: &System) -> impl Iterator<Item = (&MeshProbe, Entry)> {
 }
 
 impl MeshProbe {
+    /// Moves it to a mesh in which its first node and its first segment have other numbers.
+    pub(in crate::discrete) fn shift(&mut self, nodes: usize, segments: usize) {
+        self.node.0 += nodes;
+        self.cell.0 += nodes;
+        self.strained.0 += nodes;
+        self.segment += segments;
+    }
+
     /// Probes of a case.
     pub fn all(case: &Case, mesh: &BeamMesh, sections: &MeshSections) -> Vec<Self> {
         if case.probes.is_empty() {
@@ -226,7 +234,11 @@ impl MeshProbe {
             None => look.w.shape.kappa[node],
         };
         let (node, share) = self.node;
-        let turns = look.tip_angle() - tip_angle(look.system, look.now, &look.w);
+        let beam = mesh.beam_of_node(node);
+        let turns = match beam {
+            0 => look.tip_angle() - tip_angle(look.system, look.now, &look.w, 0),
+            _ => 0.0,
+        };
         // from the midpoint of the first cell to that of the cell
         let passed = rotation(look.system, &look.w, node);
         let by = share - 0.5;
@@ -239,7 +251,7 @@ impl MeshProbe {
             () if share < 0.5 => by * kappa(node),
             () => by * kappa(node + 1),
         };
-        first_angle(look.system, look.now, &look.w) - (passed + mesh.lengths[node] * rest) + turns
+        first_angle(look.system, look.now, &look.w, beam) - (passed + mesh.lengths[node] * rest) + turns
     }
 
     /// Displacement, with the curvature of the cell: `r'' = λ κ e_n`, cubic between the nodes.

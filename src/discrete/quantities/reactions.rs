@@ -4,7 +4,7 @@ use super::evaluate::StateView;
 use super::probes::HistoryColumn;
 use crate::case::{Rotation, Translation};
 use crate::discrete::System;
-use crate::discrete::angle_unwrapping::{first_angle, nearest};
+use crate::discrete::angle_unwrapping::{first_angle, nearest, tip_angle};
 use crate::discrete::ledger::reaction;
 use crate::discrete::residual::momentum::end_tangent;
 
@@ -19,6 +19,36 @@ enum ReactionKind {
     Angle(usize),
     /// Force of springs and dashpots of an attachment, transverse (0) or axial (1).
     Attached(usize, usize),
+    /// Motion of the tip of a beam of a structure.
+    Tip(usize, TipMotion),
+    /// Rotation of another part of a joint relative to the first one: numbers of both angles, and of the joint.
+    Turned([usize; 2], usize),
+}
+
+/// Motion of the tip of a beam of a structure.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum TipMotion {
+    /// Displacement along the axes of the beam, transverse (0) or axial (1).
+    Displacement(usize),
+    /// Slope angle.
+    Angle,
+    /// Position along the axes of the case.
+    Position(usize),
+}
+
+/// Number of the last of the parts of which each beam of a structure consists.
+fn tips(system: &System) -> Vec<usize> {
+    let Some(structure) = &system.model.structure else {
+        return vec![];
+    };
+    let ends = structure.beams.iter().enumerate();
+    ends.filter(|(_, beam)| beam.piece.at_end[1]).map(|(k, _)| k).collect()
+}
+
+/// First part of the names of quantities of the beam of an end; empty for a single beam.
+fn beam_of(system: &System, end: usize) -> String {
+    let structure = system.model.structure.as_ref();
+    structure.map_or_else(String::new, |structure| format!("{}.", structure.beams[end / 2].name))
 }
 
 const ENDS: [&str; 2] = ["root", "tip"];
@@ -37,10 +67,17 @@ fn all(system: &System) -> Vec<ReactionKind> {
         match &end.rotation {
             Rotation::Slope(_) => all.push(ReactionKind::Couple(k)),
             // the tip's angle is an observable of its own
-            Rotation::Moment(_) if k == 0 => all.push(ReactionKind::Angle(k)),
+            Rotation::Moment(_) if k % 2 == 0 && turns_freely(system, k) => all.push(ReactionKind::Angle(k)),
             Rotation::Moment(_) => {}
         }
     }
+    for tip in tips(system) {
+        use TipMotion::{Angle, Displacement, Position};
+        let motions = [Displacement(0), Displacement(1), Angle, Position(0), Position(1)];
+        all.extend(motions.map(|motion| ReactionKind::Tip(tip, motion)));
+    }
+    let hinges = system.joints.hinges.iter().enumerate();
+    all.extend(hinges.map(|(k, hinge)| ReactionKind::Turned(hinge.angles, k)));
     for (k, attachment) in system.model.attachments.iter().enumerate() {
         let holds = |axis: &usize| attachment.stiffness[*axis] > 0.0 || attachment.damping[*axis] > 0.0;
         all.extend((0..2).filter(holds).map(|axis| ReactionKind::Attached(k, axis)));
@@ -48,30 +85,58 @@ fn all(system: &System) -> Vec<ReactionKind> {
     all
 }
 
+/// True for a root without support of its angle; in a structure, for one of a beam, not of a part of one.
+fn turns_freely(system: &System, end: usize) -> bool {
+    let structure = system.model.structure.as_ref();
+    structure.is_none_or(|structure| structure.beams[end / 2].piece.at_end[0] && system.joints.angle_of(end).is_none())
+}
+
 /// Columns of the reaction quantities of a system.
 pub fn columns(system: &System) -> impl Iterator<Item = HistoryColumn> {
     all(system).into_iter().map(|one| {
+        let of = |end: usize| beam_of(system, end);
         let (name, unit, about) = match one {
             ReactionKind::End(k, axis) => (
-                format!("reaction_{}_{}", ENDS[k], AXES[axis]),
+                format!("{}reaction_{}_{}", of(k), ENDS[k % 2], AXES[axis]),
                 "N",
-                format!("force in {} of the support at the {} on the beam", AXES[axis], ENDS[k]),
+                format!(
+                    "force in {} of the support at the {} on the beam",
+                    AXES[axis],
+                    ENDS[k % 2]
+                ),
             ),
             ReactionKind::Couple(k) => (
-                format!("reaction_{}_couple", ENDS[k]),
+                format!("{}reaction_{}_couple", of(k), ENDS[k % 2]),
                 "N m",
                 format!(
                     "couple of the support at the {} on the beam, positive with phi",
-                    ENDS[k]
+                    ENDS[k % 2]
                 ),
             ),
             ReactionKind::Angle(k) => (
-                format!("turned_{}", ENDS[k]),
+                format!("{}turned_{}", of(k), ENDS[k % 2]),
                 "rad",
                 format!(
                     "slope angle phi of the {}, which turns, counted over full turns",
-                    ENDS[k]
+                    ENDS[k % 2]
                 ),
+            ),
+            ReactionKind::Tip(beam, motion) => {
+                let (what, unit, about) = match motion {
+                    TipMotion::Displacement(0) => {
+                        ("tip_u1", "m", "transverse displacement of its tip, in the beam's axes")
+                    }
+                    TipMotion::Displacement(_) => ("tip_u3", "m", "axial displacement of its tip, in the beam's axes"),
+                    TipMotion::Angle => ("tip_angle", "rad", "rotation of its tip, counted over full turns"),
+                    TipMotion::Position(0) => ("tip_x", "m", "position x of its tip, in the axes of the case"),
+                    TipMotion::Position(_) => ("tip_z", "m", "position z of its tip, in the axes of the case"),
+                };
+                (format!("{}{what}", of(2 * beam)), unit, about.to_owned())
+            }
+            ReactionKind::Turned(_, k) => (
+                format!("hinge_{}_angle", k + 1),
+                "rad",
+                "rotation of the hinge: of the further beam relative to the first one".to_owned(),
             ),
             ReactionKind::Attached(k, axis) => (
                 format!("reaction_attachment_{}_{}", k + 1, AXES[axis]),
@@ -90,25 +155,25 @@ pub fn columns(system: &System) -> impl Iterator<Item = HistoryColumn> {
 /// Values of the reaction quantities in a state.
 pub fn values(look: &StateView, put: &mut impl FnMut(f64)) {
     let (system, now, w) = (look.system, look.now, &*look.w);
-    let node = |end: usize| end * (system.mesh.nodes - 1);
+    let ends: Vec<_> = system.mesh.ends().map(|(_, end)| end).collect();
+    let node = |end: usize| ends[end].node;
     for one in all(system) {
         put(match one {
             ReactionKind::End(k, axis) => reaction(system, now, w, node(k))[axis],
-            ReactionKind::Couple(k) => {
-                let part = |moments: &[f64]| moments.get(node(k)).copied().unwrap_or(0.0);
-                let f = &w.forces;
-                let moment = f.moment[node(k)] + f.viscous_moment[node(k)];
-                let moment = moment
-                    + part(&f.nonlinear_moment)
-                    + part(&f.relaxing_moment)
-                    + part(&f.arc_moment)
-                    + part(&f.offset_moment);
-                if k == 0 { moment } else { -moment }
-            }
+            ReactionKind::Couple(k) => -ends[k].outward * system.total_moment(w, node(k)),
             ReactionKind::Angle(k) => {
                 let tangent = end_tangent(system, now, w, node(k));
-                nearest(tangent.x.atan2(tangent.z), first_angle(system, now, w))
+                nearest(tangent.x.atan2(tangent.z), first_angle(system, now, w, k / 2))
             }
+            ReactionKind::Tip(beam, motion) => {
+                let tip = node(2 * beam + 1);
+                match motion {
+                    TipMotion::Displacement(axis) => w.motion.u[tip][axis],
+                    TipMotion::Angle => tip_angle(system, now, w, beam),
+                    TipMotion::Position(axis) => system.position(w, tip)[axis],
+                }
+            }
+            ReactionKind::Turned([first, other], _) => w.shape.joints.angle[other] - w.shape.joints.angle[first],
             ReactionKind::Attached(k, axis) => {
                 let own = system.attached.iter().filter(|attached| attached.number == k);
                 own.map(|a| a.spring(w)[axis] + a.dashpot(w)[axis]).sum()

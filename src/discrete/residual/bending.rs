@@ -32,15 +32,19 @@ pub fn moments<T: Scalar>(system: &System, now: &TimeData, w: &mut Workspace<T>)
     }
     if presses(system) {
         let k = system.mesh.cells_per_segment;
-        let curvature = &w.coupling.pressure_curvature;
-        for (moments, free) in moment.chunks_mut(k).zip(curvature) {
-            moments[1..].iter_mut().for_each(|moment| *moment -= *free);
-        }
-        moment[0] -= curvature[0];
-        moment[last] -= curvature[system.mesh.segments - 1];
-        let borders = system.mesh.borders.iter();
-        for (j, (pair, [left, right])) in curvature.windows(2).zip(borders).enumerate() {
-            moment[(j + 1) * k] -= pair[0] * *left + pair[1] * *right;
+        for beam in &system.mesh.beams {
+            let moment = &mut moment[beam.nodes.clone()];
+            let curvature = &w.coupling.pressure_curvature[beam.segments.clone()];
+            for (moments, free) in moment.chunks_mut(k).zip(curvature) {
+                moments[1..].iter_mut().for_each(|moment| *moment -= *free);
+            }
+            let last = moment.len() - 1;
+            moment[0] -= curvature[0];
+            moment[last] -= curvature[curvature.len() - 1];
+            let borders = system.mesh.borders[beam.segments.start..].iter();
+            for (j, (pair, [left, right])) in curvature.windows(2).zip(borders).enumerate() {
+                moment[(j + 1) * k] -= pair[0] * *left + pair[1] * *right;
+            }
         }
     }
     for (moment, rest) in moment.iter_mut().zip(&now.rest_curvature[0]) {
@@ -56,8 +60,8 @@ pub fn moments<T: Scalar>(system: &System, now: &TimeData, w: &mut Workspace<T>)
         }
     }
     if system.sections.offset.is_empty() {
-        for node in [0, last] {
-            given_moment(system, now, node, w);
+        for (_, end) in system.mesh.ends() {
+            given_moment(system, now, end.node, w);
         }
     }
     eccentric::side_moments(system, now, w);
@@ -66,22 +70,15 @@ pub fn moments<T: Scalar>(system: &System, now: &TimeData, w: &mut Workspace<T>)
     }
     relaxation::moments(system, now, w);
     if section.bends_viscously() {
-        w.forces.viscous_moment.fill(T::zero());
-        let first = usize::from(now.ends[0].slope.is_none());
-        let end = last + usize::from(now.ends[1].slope.is_some());
-        for (i, viscosity) in system
-            .sections
-            .bending_viscosity
-            .iter()
-            .enumerate()
-            .take(end)
-            .skip(first)
-        {
+        for (i, viscosity) in system.sections.bending_viscosity.iter().enumerate() {
             let mut rate = w.shape.kappa_rate[i];
             if let Some(rest) = now.rest_curvature[1].get(i) {
                 rate -= T::constant(*rest);
             }
             w.forces.viscous_moment[i] = rate * *viscosity;
+        }
+        for (_, end) in system.mesh.ends().filter(|(k, _)| !now.ends[*k].turns()) {
+            w.forces.viscous_moment[end.node] = T::zero();
         }
         if system.mesh.fourth {
             fourth_order::moments(system, now, &mut w.forces.viscous_moment);
@@ -91,7 +88,7 @@ pub fn moments<T: Scalar>(system: &System, now: &TimeData, w: &mut Workspace<T>)
 
 /// Moment and curvature of an end with given moment.
 fn given_moment<T: Scalar>(system: &System, now: &TimeData, node: usize, w: &mut Workspace<T>) {
-    let Some(end) = now.end(node).filter(|end| end.slope.is_none()) else {
+    let Some(end) = now.end(node).filter(|end| !end.turns()) else {
         return;
     };
     let ei = system.sections.bending[node];
@@ -198,6 +195,29 @@ pub fn total_moment_drop<T: Scalar>(system: &System, w: &Workspace<T>, c: usize)
         drop + (w.forces.viscous_moment[c] - w.forces.viscous_moment[c + 1])
     } else {
         drop
+    }
+}
+
+impl System {
+    /// Moment at a node, all parts [N m].
+    #[inline]
+    pub fn total_moment<T: Scalar>(&self, w: &Workspace<T>, node: usize) -> T {
+        let forces = &w.forces;
+        let mut moment = forces.moment[node];
+        for part in [
+            &forces.nonlinear_moment,
+            &forces.relaxing_moment,
+            &forces.arc_moment,
+            &forces.offset_moment,
+        ] {
+            if let Some(more) = part.get(node) {
+                moment += *more;
+            }
+        }
+        match self.model.section.bends_viscously() {
+            true => moment + forces.viscous_moment[node],
+            false => moment,
+        }
     }
 }
 

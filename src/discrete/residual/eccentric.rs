@@ -2,6 +2,7 @@
 
 use super::bending::{pressure_curvature, relative_stiffness, segment_curvature};
 use crate::case::schema::Effect;
+use crate::discrete::time_data::EndData;
 use crate::discrete::{System, TimeData, Workspace};
 use crate::numerics::Scalar;
 
@@ -190,27 +191,23 @@ impl GivenMoment {
 
 /// Ends with given moments.
 fn ends<'a>(system: &'a System, now: &'a TimeData) -> impl Iterator<Item = GivenMoment> + 'a {
-    let last = system.mesh.nodes - 1;
-    let all = [(0, 1.min(last), 0), (last, last - 1, last - 1)]
-        .into_iter()
-        .zip(&now.ends);
-    all.filter(|(_, end)| end.slope.is_none())
-        .map(|((node, beside, cell), end)| GivenMoment {
-            node,
-            beside,
-            cell,
-            moment: end.moment.value,
-            moment_rate: end.moment.rate,
-            offset: system.sections.offset.get(cell).copied().unwrap_or(0.0),
+    let all = system.mesh.ends().zip(&now.ends);
+    all.filter(|(_, given)| !given.turns())
+        .map(|((_, end), given)| GivenMoment {
+            node: end.node,
+            beside: if end.outward < 0.0 { end.cell + 1 } else { end.cell },
+            cell: end.cell,
+            moment: given.moment.value,
+            moment_rate: given.moment.rate,
+            offset: system.sections.offset.get(end.cell).copied().unwrap_or(0.0),
         })
 }
 
 /// Nodes of a cell with their weights in the mean rate of curvature; an end with a given moment has none, nor has a node where neutral axes jump.
 fn viscous_weights(system: &System, now: &TimeData, cell: usize) -> [(usize, f64); 2] {
-    let last = system.mesh.nodes - 1;
-    let moves = |node: usize| now.end(node).is_none_or(|end| end.slope.is_some());
+    let moves = |node: usize| now.end(node).is_none_or(EndData::turns);
     let jumps = |node: usize| system.sections.offset_border(node).is_some();
-    let [left, right] = [cell, cell + 1].map(|node| ((node != 0 && node != last) || moves(node)) && !jumps(node));
+    let [left, right] = [cell, cell + 1].map(|node| moves(node) && !jumps(node));
     match (left, right) {
         (true, false) => [(cell, 1.0), (cell + 1, 0.0)],
         (false, true) => [(cell, 0.0), (cell + 1, 1.0)],
@@ -228,7 +225,7 @@ fn mean_rest(now: &TimeData, order: usize, cell: usize) -> f64 {
 /// `λ_p` of a cell.
 fn pressure_stretch<T: Scalar>(system: &System, w: &Workspace<T>, cell: usize) -> T {
     match system.fluid.is_some() && system.model.effects.has(Effect::PressureToStretch) {
-        true => w.coupling.pressure_stretch[cell / system.mesh.cells_per_segment],
+        true => w.coupling.pressure_stretch[system.mesh.segment_of(cell)],
         false => T::zero(),
     }
 }

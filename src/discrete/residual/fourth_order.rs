@@ -266,7 +266,7 @@ pub fn of_bending(system: &System, now: &TimeData, w: &Workspace<f64>, node: usi
 pub fn elastic_stretch(system: &System, w: &Workspace<f64>, cell: usize) -> f64 {
     let pressed = system.fluid.is_some() && system.model.effects.has(Effect::PressureToStretch);
     let free = if pressed {
-        w.coupling.pressure_stretch[cell / system.mesh.cells_per_segment]
+        w.coupling.pressure_stretch[system.mesh.segment_of(cell)]
     } else {
         0.0
     };

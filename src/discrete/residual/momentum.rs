@@ -1,9 +1,11 @@
 //! Momentum balance of nodes, and the forces on them.
 
 use super::bending::elastic_curvature;
+use super::solid::angle_of_end;
 use super::{ambient_fluid, rotating_frame};
 use crate::discrete::attached::at_node;
 use crate::discrete::ledger::EnergyRate;
+use crate::discrete::mesh::BeamEnd;
 use crate::discrete::{System, TimeData, Workspace, bodies, contact_points};
 use crate::model::Kinematics;
 use crate::numerics::{Planar, Scalar, wide};
@@ -24,15 +26,14 @@ use crate::numerics::{Planar, Scalar, wide};
 /// The force `-m U''` does work on displacements relative to the frame: `P_ends` gains `-Σ h_i m U_i'' (v3_i - U_i')`. The kinetic energy
 /// of axial motion is that of the frame, `Σ h_i m U_i'²/2`.
 pub fn momentum<T: Scalar>(system: &System, now: &TimeData, w: &Workspace<T>, r: &mut [T]) {
-    let last = system.mesh.nodes - 1;
     if system.stands_alone && system.layout.inertia {
         wide!(inner_momentum::<T, 0>(system, now, w, r));
         wide!(inner_momentum::<T, 1>(system, now, w, r));
-        for end in [0, last] {
-            node_momentum(system, now, w, end, r);
+        for (_, end) in system.mesh.ends() {
+            node_momentum(system, now, w, end.node, r);
         }
     } else {
-        for node in 0..=last {
+        for node in 0..system.mesh.nodes {
             node_momentum(system, now, w, node, r);
         }
     }
@@ -100,8 +101,8 @@ pub fn outer_forces<T: Scalar>(
 ) {
     let length = system.mesh.node_lengths[node];
     let mut given = Planar::constant(now.force[node] * length);
-    if node == 0 || node == system.mesh.nodes - 1 {
-        given += end_force(system, now, w, node);
+    if let Some((end, _)) = system.mesh.end_at(node) {
+        given += end_force(system, now, w, end, node);
     }
     each(Some(EnergyRate::Loads), given);
     if let Some(added) = w.forces.formulation.get(node) {
@@ -143,14 +144,14 @@ pub fn outer_forces<T: Scalar>(
 
 /// Given force at an end node: the dead force plus follower section forces `N e_t + V e_n` at the end's angle (A.53,
 /// A.54), which act on the body with the sign of the outward section.
-pub fn end_force<T: Scalar>(system: &System, now: &TimeData, w: &Workspace<T>, node: usize) -> Planar<T> {
-    let last = system.mesh.nodes - 1;
-    let end = &now.ends[usize::from(node == last)];
+pub fn end_force<T: Scalar>(system: &System, now: &TimeData, w: &Workspace<T>, end: usize, node: usize) -> Planar<T> {
+    let at_tip = end % 2 == 1;
+    let end = &now.ends[end];
     let dead = Planar::constant(end.force);
     let Some((normal, shear)) = end.follower else {
         return dead;
     };
-    let outward = if node == last { 1.0 } else { -1.0 };
+    let outward = if at_tip { 1.0 } else { -1.0 };
     let (normal, shear) = (outward * normal, outward * shear);
     let own = follower(
         system,
@@ -180,16 +181,22 @@ pub fn follower<T: Scalar>(
     }
 }
 
+/// The end at a node.
+fn end_of(system: &System, node: usize) -> (usize, BeamEnd) {
+    system
+        .mesh
+        .end_at(node)
+        .unwrap_or_else(|| unreachable!("node {node} is an end"))
+}
+
 /// Unit tangent at an end: prescribed, or `φ_0 = φ_{1/2} + (h/2) κ_0`, `φ_n = φ_{n-1/2} - (h/2) κ_n`.
 pub fn end_tangent<T: Scalar>(system: &System, now: &TimeData, w: &Workspace<T>, node: usize) -> Planar<T> {
-    let last = system.mesh.nodes - 1;
-    let at_tip = node == last;
-    if let Some(slope) = now.ends[usize::from(at_tip)].slope {
-        return Planar::constant(Planar::tangent(slope.value));
+    let (k, end) = end_of(system, node);
+    if let Some([angle, _]) = angle_of_end(&now.ends[k], &w.shape.joints.angle, &[]) {
+        return Planar::tangent(angle);
     }
-    let cell = if at_tip { last - 1 } else { 0 };
-    let half = if at_tip { 0.5 } else { -0.5 } * system.mesh.lengths[cell];
-    tangent_beyond(w, cell, node, half)
+    let half = 0.5 * end.outward * system.mesh.lengths[end.cell];
+    tangent_beyond(w, end.cell, node, half)
 }
 
 /// Angle of a node for small rotations: mean of its cells.
@@ -220,12 +227,11 @@ pub fn angle_beyond<T: Scalar>(w: &Workspace<T>, cell: usize, node: usize, by: f
 
 /// Angle at an end for small rotations, corresponding to [`end_tangent`].
 fn end_angle<T: Scalar>(system: &System, now: &TimeData, w: &Workspace<T>, node: usize) -> T {
-    let at_tip = node + 1 == system.mesh.nodes;
-    if let Some(slope) = now.ends[usize::from(at_tip)].slope {
-        return T::constant(slope.value);
+    let (k, end) = end_of(system, node);
+    if let Some([angle, _]) = angle_of_end(&now.ends[k], &w.shape.joints.angle, &[]) {
+        return angle;
     }
-    let (cell, half) = if at_tip { (node - 1, 0.5) } else { (0, -0.5) };
-    angle_beyond(w, cell, node, half * system.mesh.lengths[cell])
+    angle_beyond(w, end.cell, node, 0.5 * end.outward * system.mesh.lengths[end.cell])
 }
 
 /// `[E15]` Forces of the published form in addition to the conservative one, at nodes:

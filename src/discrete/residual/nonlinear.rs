@@ -27,10 +27,11 @@ pub fn forces<T: Scalar>(system: &System, w: &mut Workspace<T>) {
         let per_area = 1.0 / wet.length_ratio_of(j, system.model.length);
         let slopes = law.at(state(system, wet, w, j));
         w.coupling.nonlinear_energy[j] = slopes.energy * mesh.segment_lengths[j];
-        w.forces.nonlinear_normal[j * k..(j + 1) * k].fill(slopes.force);
+        let cells = mesh.cells_of(j);
+        w.forces.nonlinear_normal[cells.clone()].fill(slopes.force);
         let stiffness = system.model.section_of(j).bending_stiffness;
         for i in 0..=k {
-            let node = j * k + i;
+            let node = cells.start + i;
             let share = mesh.moment_weight(i) * mesh.segment_lengths[j] / mesh.node_lengths[node];
             let ratio = system.sections.bending[node] / stiffness;
             w.forces.nonlinear_moment[node] += slopes.moment * (share * ratio);

@@ -183,7 +183,7 @@ pub fn settle(system: &System, now: &TimeData, w: &Workspace<f64>, y: &mut [f64]
     }
     for (k, unknown) in own.curvature.clone().enumerate() {
         let node = k % system.mesh.nodes;
-        let turns = now.end(node).is_some_and(|end| end.slope.is_none());
+        let turns = now.end(node).is_some_and(|end| !end.turns());
         let mut curvature = w.shape.kappa[node];
         if let Some(relaxing) = w.forces.relaxing_moment.get(node).filter(|_| turns) {
             let stretch = if system.model.published() {

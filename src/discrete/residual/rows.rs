@@ -34,9 +34,9 @@ pub fn means<T: Scalar>(system: &System, w: &Workspace<T>, r: &mut [T]) {
 /// Mean moment `Mbar` of a segment, about its own neutral axis.
 pub fn mean_moment<T: Scalar>(system: &System, w: &Workspace<T>, segment: usize) -> T {
     let mut mean = mean_of_nodes(system, &w.forces.moment, segment);
-    let k = system.mesh.cells_per_segment;
+    let own = system.mesh.cells_of(segment);
     // the segment is on the right of its beginning, and on the left of its end
-    for (node, side) in [(segment * k, 1), ((segment + 1) * k, 0)] {
+    for (node, side) in [(own.start, 1), (own.end, 0)] {
         if let Some(border) = system.sections.offset_border(node) {
             let own = w.forces.side_moment[border][side];
             mean += (own - w.forces.moment[node]) * system.mesh.moment_weight(0);
@@ -49,7 +49,8 @@ pub fn mean_moment<T: Scalar>(system: &System, w: &Workspace<T>, segment: usize)
 pub fn mean_of_nodes<T: Scalar>(system: &System, values: &[T], segment: usize) -> T {
     let k = system.mesh.cells_per_segment;
     let [at_edge, inside] = [0, 1].map(|i| system.mesh.moment_weight(i));
-    let own = &values[segment * k..=(segment + 1) * k];
+    let cells = system.mesh.cells_of(segment);
+    let own = &values[cells.start..=cells.end];
     let mut mean = own[0] * at_edge;
     for value in &own[1..k] {
         mean += *value * inside;
@@ -61,7 +62,7 @@ pub fn mean_of_nodes<T: Scalar>(system: &System, values: &[T], segment: usize) -
 pub fn mean_force<T: Scalar>(system: &System, w: &Workspace<T>, segment: usize) -> T {
     let k = system.mesh.cells_per_segment;
     let mut force = T::zero();
-    for c in segment * k..(segment + 1) * k {
+    for c in system.mesh.cells_of(segment) {
         force += w.forces.normal[c];
     }
     force * (1.0 / k as f64)

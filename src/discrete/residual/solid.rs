@@ -2,6 +2,7 @@
 
 use super::{eccentric, fourth_order, timoshenko};
 use crate::case::schema::Effect;
+use crate::discrete::time_data::EndData;
 use crate::discrete::workspace::{BeamShape, Sections};
 use crate::discrete::{System, TimeData, Workspace, attached, bodies};
 use crate::model::Kinematics;
@@ -26,14 +27,24 @@ pub fn kinematics<T: Scalar>(system: &System, now: &TimeData, w: &mut Workspace<
     wide!(lines(system, &w.motion.u, shape, strain));
     let (tangent, kappa) = (&shape.tangent[..last], &mut shape.kappa);
     wide!(curvatures(tangent, &inverse[1..last], &mut kappa[1..last]));
-    if let Some(slope) = now.ends[0].slope {
-        let given = Planar::constant(Planar::tangent(slope.value));
-        shape.kappa[0] = -given.angle_to(tangent[0]) * inverse[0];
+    let joint_angle = &shape.joints.angle;
+    for (k, end) in system.mesh.ends() {
+        let Some([angle, _]) = angle_of_end(&now.ends[k], joint_angle, &[]) else {
+            continue;
+        };
+        let angle = Planar::tangent(angle);
+        shape.kappa[end.node] = tangent[end.cell].angle_to(angle) * (-end.outward * inverse[end.node]);
     }
-    if let Some(slope) = now.ends[1].slope {
-        let given = Planar::constant(Planar::tangent(slope.value));
-        shape.kappa[last] = -tangent[last - 1].angle_to(given) * inverse[last];
+}
+
+/// Angle of an end and its rate, if they are given or those of a joint; without rates of joints, 0.
+#[inline]
+pub fn angle_of_end<T: Scalar>(end: &EndData, angle: &[T], rate: &[T]) -> Option<[T; 2]> {
+    if let Some(joint) = end.joint {
+        return Some([angle[joint], rate.get(joint).copied().unwrap_or(T::zero())]);
     }
+    end.slope
+        .map(|slope| [T::constant(slope.value), T::constant(slope.rate)])
 }
 
 /// Curvature `κ` between cells.
@@ -146,11 +157,12 @@ pub fn curvature_rates<T: Scalar>(system: &System, now: &TimeData, w: &mut Works
     for ((rate, pair), inverse) in w.shape.kappa_rate[1..last].iter_mut().zip(turning).zip(&inverse[1..]) {
         *rate = (pair[0] - pair[1]) * *inverse;
     }
-    if let Some(slope) = now.ends[0].slope {
-        w.shape.kappa_rate[0] = (-w.shape.angle_rate[0] + slope.rate) * inverse[0];
-    }
-    if let Some(slope) = now.ends[1].slope {
-        w.shape.kappa_rate[last] = (w.shape.angle_rate[last - 1] - slope.rate) * inverse[last];
+    let shape = &mut w.shape;
+    for (k, end) in system.mesh.ends() {
+        if let Some([_, rate]) = angle_of_end(&now.ends[k], &shape.joints.angle, &shape.joints.rate) {
+            let turning = rate - shape.angle_rate[end.cell];
+            shape.kappa_rate[end.node] = turning * (-end.outward * inverse[end.node]);
+        }
     }
 }
 
@@ -172,12 +184,15 @@ pub fn normal_forces<T: Scalar>(system: &System, now: &TimeData, w: &mut Workspa
     }
     if pressed {
         let k = system.mesh.cells_per_segment;
-        let segments = w.forces.normal.chunks_exact_mut(k).zip(ea.chunks_exact(k));
-        for ((forces, ea), stretch) in segments.zip(&w.coupling.pressure_stretch) {
-            forces
-                .iter_mut()
-                .zip(ea)
-                .for_each(|(force, ea)| *force -= *stretch * *ea);
+        for beam in &system.mesh.beams {
+            let forces = w.forces.normal[beam.cells.clone()].chunks_exact_mut(k);
+            let segments = forces.zip(ea[beam.cells.clone()].chunks_exact(k));
+            for ((forces, ea), stretch) in segments.zip(&w.coupling.pressure_stretch[beam.segments.clone()]) {
+                forces
+                    .iter_mut()
+                    .zip(ea)
+                    .for_each(|(force, ea)| *force -= *stretch * *ea);
+            }
         }
     }
     if section.axial_damping_time > 0.0 {

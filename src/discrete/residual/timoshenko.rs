@@ -1,7 +1,7 @@
 //! Beam with shear: sections rotate by their own angles.
 
 use super::bending::total_moment_drop;
-use super::solid::{couple, lines, normal_force};
+use super::solid::{angle_of_end, couple, lines, normal_force};
 use super::{arcs, fourth_order, relaxation};
 use crate::case::schema::Effect;
 use crate::discrete::workspace::Sections;
@@ -55,11 +55,10 @@ fn curvatures<T: Scalar>(system: &System, now: &TimeData, w: &mut Workspace<T>) 
     for i in 1..last {
         w.shape.kappa[i] = (angle[i - 1] - angle[i]) * inverse[i];
     }
-    if let Some(slope) = now.ends[0].slope {
-        w.shape.kappa[0] = (-angle[0] + slope.value) * inverse[0];
-    }
-    if let Some(slope) = now.ends[1].slope {
-        w.shape.kappa[last] = (angle[last - 1] + -slope.value) * inverse[last];
+    for (k, end) in system.mesh.ends() {
+        if let Some([given, _]) = angle_of_end(&now.ends[k], &w.shape.joints.angle, &[]) {
+            w.shape.kappa[end.node] = (given - angle[end.cell]) * (-end.outward * inverse[end.node]);
+        }
     }
 }
 
@@ -179,6 +178,9 @@ pub fn rows<T: Scalar>(system: &System, w: &Workspace<T>, r: &mut [T]) {
         r[row] = -*moment;
     }
     if turning.is_empty() || !system.model.effects.has(Effect::RotaryInertia) {
+        for (c, row) in turning.enumerate().filter(|(c, _)| system.mesh.is_gap(*c)) {
+            r[row] = w.shape.sections.angle[c];
+        }
         return;
     }
     let rotary = &system.sections.rotary;
@@ -188,5 +190,9 @@ pub fn rows<T: Scalar>(system: &System, w: &Workspace<T>, r: &mut [T]) {
     }
     if system.mesh.fourth {
         fourth_order::each_step(system, rotary, momentum, |c, step| r[turning.start + c] += step);
+    }
+    let angles = system.layout.turning.angle.start;
+    for c in (0..system.mesh.cells).filter(|c| system.mesh.is_gap(*c)) {
+        (r[angles + c], r[turning.start + c]) = (w.shape.sections.angle[c], w.shape.angle_rate[c]);
     }
 }

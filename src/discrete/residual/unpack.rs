@@ -33,6 +33,14 @@ use crate::numerics::{Planar, Scalar, wide};
 pub fn unpack<T: Scalar>(system: &System, now: &TimeData, y: &[T], yp: &[T], w: &mut Workspace<T>) {
     let l = &system.layout;
     move_nodes(system, now, y, yp, &mut w.motion);
+    copy(&mut w.shape.joints.angle, y, &l.joints.angle);
+    copy(&mut w.shape.joints.rate, yp, &l.joints.angle);
+    for (number, rate) in l.joints.rate.iter().enumerate() {
+        if let Some(rate) = *rate {
+            (w.shape.joints.rate[number], w.shape.joints.acceleration[number]) = (y[rate], yp[rate]);
+        }
+    }
+    system.joints.move_nodes(now, w);
     let sections = &mut w.shape.sections;
     copy(&mut sections.angle, y, &l.turning.angle);
     match &l.turning.rate {

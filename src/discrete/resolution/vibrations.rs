@@ -53,13 +53,13 @@ impl Vibrations {
             )
         };
         let modes = if bends {
-            euler_bernoulli_modes::bending(&model.ends, MODES)
+            euler_bernoulli_modes::bending(model.root_and_tip(), MODES)
         } else {
-            euler_bernoulli_modes::axial(&model.ends, MODES)
+            euler_bernoulli_modes::axial(model.root_and_tip(), MODES)
         };
         let mut given = shapes::at_nodes(profile, &Cells::equal(CELLS));
         let largest = given.iter().fold(0.0_f64, |most, value| most.max(value.abs()));
-        for rigid in euler_bernoulli_modes::rigid(&model.ends, bends) {
+        for rigid in euler_bernoulli_modes::rigid(model.root_and_tip(), bends) {
             let [part, square] = products(&given, rigid);
             let removed = part / square;
             let values = given.iter_mut().enumerate();

@@ -214,6 +214,9 @@ impl<'a> Chooser<'a> {
     fn obstacle(&self, effect: Effect) -> Option<Obstacle> {
         let (case, network) = (self.case, self.network);
         let [across, turning] = [Effect::TransverseMotion, Effect::FiniteRotation].map(|e| self.set.has(e));
+        if case.is_structure() && obstacles::OF_STRUCTURES.contains(&effect) {
+            return Some(obstacles::structure());
+        }
         match effect {
             Effect::TransverseMotion => obstacles::transverse_motion(case),
             Effect::FiniteRotation => obstacles::finite_rotation(case),

@@ -1,6 +1,6 @@
 //! Obstacles to omitting an effect: inputs of a case that require it.
 
-use crate::case::schema::{Attachment, Case, Contact, Formulation, Load};
+use crate::case::schema::{Attachment, Case, Contact, Effect, Formulation, Load};
 use crate::case::{ResolvedEnd, Rotation, Translation, spans};
 use crate::functions::profile::Profile;
 use crate::model::network::{AccumulatorLaw, Feed, Link};
@@ -20,6 +20,22 @@ fn obstacle(what: impl Into<String>, hint: &str) -> Option<Obstacle> {
         what: what.into(),
         hint: hint.into(),
     })
+}
+
+/// Effects that a structure keeps: its beams have different axes.
+pub const OF_STRUCTURES: [Effect; 4] = [
+    Effect::TransverseMotion,
+    Effect::FiniteRotation,
+    Effect::AxialStretch,
+    Effect::AxialInertia,
+];
+
+/// Obstacle: several beams.
+pub fn structure() -> Obstacle {
+    Obstacle {
+        what: "motion across one beam of a structure is motion along another".into(),
+        hint: "leave it on".into(),
+    }
 }
 
 /// Obstacle: a motion or load across the beam.

@@ -4,6 +4,7 @@
 //! stages            sequences of loads: the whole path
 //! arclength         equilibrium with the load factor as an additional unknown
 //! path_coordinates  coordinates in which paths are nearly straight
+//! structures        beams assembled from their cells
 //! overdamped        motion without inertia to the next equilibrium, where walls turn the path too sharply
 //! predictor         prediction of the next point
 //! path              step by step along the path, by predictions; limit points, bifurcations
@@ -32,6 +33,7 @@ mod sensitivity;
 mod stability;
 mod stages;
 mod state;
+mod structures;
 mod trapped_fluid;
 
 use crate::case::schema::{Case, EquilibriumStart};

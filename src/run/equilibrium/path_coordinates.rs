@@ -2,9 +2,11 @@
 
 use std::f64::consts::PI;
 
+use super::structures;
 use crate::dae::StaticBeam;
 use crate::discrete::TimeData;
 use crate::model::Kinematics;
+use crate::numerics::Planar;
 
 /// Natural coordinates: position of the first node, angles and lengths of the cells. A strongly bent beam moves its nodes on
 /// circles. Extrapolated displacements stretch it, and stretch costs `EA l²/EI` times as much as bending. Angles and lengths of
@@ -18,14 +20,18 @@ use crate::model::Kinematics;
 pub struct PathCoordinates {
     finite: bool,
     nodes: usize,
+    /// First nodes of the beams of a structure, behind the first.
+    roots: Vec<usize>,
 }
 
 impl PathCoordinates {
     /// Creates the coordinates for states of a beam.
     pub fn new(statics: &StaticBeam) -> Self {
+        let mesh = &statics.system().mesh;
         Self {
             finite: statics.system().model.kinematics == Kinematics::FiniteRotation,
-            nodes: statics.system().mesh.nodes,
+            nodes: mesh.nodes,
+            roots: mesh.beams[1..].iter().map(|beam| beam.nodes.start).collect(),
         }
     }
 
@@ -41,6 +47,9 @@ impl PathCoordinates {
         let mut z = vec![across[0], along[0]];
         let mut before = near.map_or(0.0, |near| near[2]);
         for c in 0..cells {
+            if self.roots.contains(&c) {
+                before = near.map_or(0.0, |near| near[2 + c]);
+            }
             let angle = (across[c + 1] - across[c]).atan2(along[c + 1] - along[c]);
             before += (angle - before + PI).rem_euclid(2.0 * PI) - PI;
             z.push(before);
@@ -62,6 +71,27 @@ impl PathCoordinates {
         let (system, now) = statics.beam().instant(share);
         let l = &system.layout;
         let mesh = &system.mesh;
+        if system.model.structure.is_some() {
+            let mut u = vec![Planar::default(); self.nodes];
+            for (axis, line) in l.lines.iter().enumerate() {
+                for (node, unknown, _) in line.unknowns() {
+                    u[node][axis] = x[unknown] * l.scales[unknown];
+                }
+            }
+            let joint_angles: Vec<f64> = l.joints.angle.clone().map(|k| x[k] * l.scales[k]).collect();
+            let lines: Vec<Planar<f64>> = angles
+                .iter()
+                .zip(lengths)
+                .map(|(a, l)| Planar::tangent(*a) * *l)
+                .collect();
+            structures::assemble(system, &lines, &joint_angles, &mut u);
+            for (axis, line) in l.lines.iter().enumerate() {
+                for (node, unknown, _) in line.unknowns() {
+                    x[unknown] = u[node][axis] / l.scales[unknown];
+                }
+            }
+            return x;
+        }
         let parts: [fn(f64) -> f64; 2] = [f64::sin, f64::cos];
         for (axis, line) in l.lines.iter().enumerate() {
             let free = &line.free;

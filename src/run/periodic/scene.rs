@@ -296,7 +296,7 @@ impl PeriodicScene {
     /// # Errors
     /// [`Error::Usage`] for a beam that is not held along or across.
     pub fn held(&self, name: &str) -> Result<()> {
-        let [root, tip] = &self.system.model.ends;
+        let [root, tip] = self.system.model.root_and_tip();
         let driven = |m: &Translation| matches!(m, Translation::Displacement(_));
         for (what, held) in [
             ("along", driven(&root.axial) || driven(&tip.axial)),

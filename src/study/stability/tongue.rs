@@ -96,7 +96,7 @@ pub struct Map {
 /// # Errors
 /// [`Error::Usage`] if there is none.
 pub fn shaking(case: &Case) -> Result<(f64, f64)> {
-    match settled(axial(&whole(case)?.ends)) {
+    match settled(axial(whole(case)?.root_and_tip())) {
         Signal::Sine(sine) => Ok((sine.frequency_hz, sine.amplitude.abs())),
         _ => Err(Error::Usage(format!(
             "{}: the root does not oscillate along the beam, but a map needs a sine there: /ends/root/clamped/u3_m = \

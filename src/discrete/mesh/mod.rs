@@ -5,6 +5,10 @@ use std::ops::Range;
 
 use super::shapes::Cells;
 
+mod beams;
+
+pub use beams::{BeamEnd, BeamRanges};
+
 /// Mesh with `K` equal cells in each segment.
 #[derive(Clone, Debug, PartialEq)]
 pub struct BeamMesh {
@@ -42,6 +46,10 @@ pub struct BeamMesh {
     pub parts: Vec<Range<usize>>,
     /// True if the discretization error of the beam is of fourth order, [`super::residual::fourth_order`].
     pub fourth: bool,
+    /// Beams, one after the other.
+    pub beams: Vec<BeamRanges>,
+    /// Beginning and length of the mesh in units of the length of the beam of which it is a part.
+    portion: [f64; 2],
 }
 
 impl BeamMesh {
@@ -99,7 +107,19 @@ impl BeamMesh {
             uniform,
             parts: iter::once(0..cells).collect(),
             fourth: false,
+            portion: [0.0, 1.0],
+            beams: vec![BeamRanges {
+                nodes: 0..cells + 1,
+                cells: 0..cells,
+                segments: 0..segments,
+            }],
         }
+    }
+
+    /// Sets the beginning and the length of the mesh in units of the length of the beam of which it is a part.
+    #[must_use]
+    pub fn portion(self, portion: [f64; 2]) -> Self {
+        Self { portion, ..self }
     }
 
     /// Divides the mesh into smooth parts at the beginning of segments.
@@ -200,13 +220,15 @@ impl BeamMesh {
     /// Segments on both sides of a node (equal inside a segment and at the ends).
     #[inline]
     pub fn segments_of_node(&self, node: usize) -> (usize, usize) {
-        let right = (node / self.cells_per_segment).min(self.segments - 1);
+        let beam = &self.beams[self.beam_of_node(node)];
+        let (node, first) = (node - beam.nodes.start, beam.segments.start);
+        let right = (node / self.cells_per_segment).min(beam.segments.len() - 1);
         let left = if node == 0 {
             0
         } else {
             (node - 1) / self.cells_per_segment
         };
-        (left, right)
+        (first + left, first + right)
     }
 
     /// Segments on both sides of a node, with their shares in its length.
@@ -269,16 +291,17 @@ impl BeamMesh {
         (cell, (self.coordinate(place) - here) / (next - here))
     }
 
-    /// Cells in units of the beam's length.
+    /// Cells in units of the length of the beam of which the mesh is a part.
     pub fn shares(&self) -> Cells {
-        if self.uniform {
+        let [begin, portion] = self.portion;
+        if self.uniform && portion == 1.0 {
             return Cells::equal(self.cells);
         }
-        let total = self.coordinates[self.cells];
-        let relative = |lengths: &[f64]| lengths.iter().map(|length| length / total).collect();
+        let total = self.coordinates[self.cells] / portion;
+        let relative = |lengths: &[f64], from: f64| lengths.iter().map(|length| from + length / total).collect();
         Cells {
-            nodes: relative(&self.coordinates),
-            lengths: relative(&self.lengths),
+            nodes: relative(&self.coordinates, begin),
+            lengths: relative(&self.lengths, 0.0),
         }
     }
 

@@ -1,0 +1,160 @@
+//! Beams of a structure and their joints.
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use super::{Attachment, Case, End, Load, Probe, Span, SpanBeam, SpanBladders, SpanRows, is_zero};
+
+/// A beam of a structure. Values of section and bladders that it does not give are those of `beam` and `bladders`, as in a span. Lengths,
+/// loads, ends, attachments and probes refer to its own axes: z along the straight beam from its root, x across.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct PlacedBeam {
+    /// Name, with which joints, bladders and outputs refer to it: letters, digits, `-` and `_`.
+    #[schemars(length(min = 1))]
+    pub name: String,
+    /// Position of its root, x and z; absent: where a joint puts it, of the first beam 0 [m].
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub origin_m: Option<[f64; 2]>,
+    /// Direction of the straight beam: the angle from z towards x, as phi [rad].
+    #[serde(default, skip_serializing_if = "is_zero")]
+    pub angle_rad: f64,
+    /// Length; absent: `/beam/length_m` [m].
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schemars(extend("exclusiveMinimum" = 0))]
+    pub length_m: Option<f64>,
+    /// Number of its segments; absent: `/bladders/per_row`, of a dry beam `/mesh/segments`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schemars(range(min = 1, max = 100000))]
+    pub segments: Option<usize>,
+    /// Rows that have bladders.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub rows: Option<SpanRows>,
+    /// Values of the solid.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub beam: Option<SpanBeam>,
+    /// Values of the bladders.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub bladders: Option<SpanBladders>,
+    /// Parts of the beam, root to tip, with values of their own, in place of `rows`, `beam` and `bladders`.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    #[schemars(length(max = 1000))]
+    pub spans: Vec<Span>,
+    /// Conditions at its ends; an end with a joint has none.
+    #[serde(default, skip_serializing_if = "PlacedEnds::is_empty")]
+    pub ends: PlacedEnds,
+    /// Loads on this beam alone, in its own axes.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    #[schemars(length(max = 10000))]
+    pub loads: Vec<Load>,
+    /// Point masses, springs, dashpots and forces at places along the beam, in its own axes.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    #[schemars(length(max = 1000))]
+    pub attachments: Vec<Attachment>,
+    /// Recorded places.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    #[schemars(length(max = 1000))]
+    pub probes: Vec<Probe>,
+}
+
+/// Conditions at the ends of a beam of a structure.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct PlacedEnds {
+    /// Conditions at the root; absent: free, or those of its joint.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub root: Option<End>,
+    /// Conditions at the tip; absent: free, or those of its joint.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub tip: Option<End>,
+}
+
+impl PlacedEnds {
+    /// True if neither end has conditions.
+    pub fn is_empty(&self) -> bool {
+        self.root.is_none() && self.tip.is_none()
+    }
+
+    /// Conditions at the root and at the tip.
+    pub fn both(&self) -> [Option<&End>; 2] {
+        [self.root.as_ref(), self.tip.as_ref()]
+    }
+}
+
+/// A joint of two or more beams, at ends of theirs or between segments. Beams meet at one position; only in a rigid joint may they be
+/// apart, as at a rigid body.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Joint {
+    /// Joined places: `"NAME.root"`, `"NAME.tip"`, or `"NAME.3"` for the place behind the third segment.
+    #[schemars(length(min = 1, max = 1000))]
+    pub at: Vec<String>,
+    /// Kind of the joint.
+    pub kind: JointKind,
+    /// Mass of a body at the first place; gravity and body forces of the case act on it [kg].
+    #[serde(default, skip_serializing_if = "is_zero")]
+    #[schemars(range(min = 0.0))]
+    pub mass_kg: f64,
+    /// Rotary inertia of that body, which turns with the first place [kg m^2].
+    #[serde(default, skip_serializing_if = "is_zero")]
+    #[schemars(range(min = 0.0))]
+    pub rotary_inertia_kg_m2: f64,
+}
+
+/// Kinds of joints.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case", deny_unknown_fields)]
+pub enum JointKind {
+    /// All beams turn alike.
+    Rigid(RigidJoint),
+    /// Every beam turns by itself.
+    Hinge(Hinge),
+}
+
+/// A rigid joint; it has no values.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct RigidJoint {}
+
+/// A hinge. Spring, damper and stop act on the rotation of each further beam relative to the first.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Hinge {
+    /// Stiffness of the spring [N m/rad].
+    #[serde(default, skip_serializing_if = "is_zero")]
+    #[schemars(range(min = 0.0))]
+    pub stiffness_n_m_rad: f64,
+    /// Rotation at which the spring is at rest [rad].
+    #[serde(default, skip_serializing_if = "is_zero")]
+    pub rest_rad: f64,
+    /// Damping [N m s/rad].
+    #[serde(default, skip_serializing_if = "is_zero")]
+    #[schemars(range(min = 0.0))]
+    pub damping_n_m_s_rad: f64,
+    /// Range of free rotation. Absent: no limit.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub stop: Option<HingeStop>,
+}
+
+/// Elastic stops at both ends of the range of a hinge.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct HingeStop {
+    /// Least free rotation [rad].
+    pub from_rad: f64,
+    /// Largest free rotation [rad].
+    pub to_rad: f64,
+    /// Stiffness of the stops [N m/rad].
+    #[schemars(extend("exclusiveMinimum" = 0))]
+    pub stiffness_n_m_rad: f64,
+    /// Rotation over which the stiffness comes in [rad].
+    #[schemars(extend("exclusiveMinimum" = 0))]
+    pub smoothing_rad: f64,
+}
+
+impl Case {
+    /// True if the case has several beams, or one that is placed.
+    pub fn is_structure(&self) -> bool {
+        !self.beams.is_empty()
+    }
+}

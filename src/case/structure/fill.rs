@@ -1,0 +1,213 @@
+//! Values of a structure that follow from others: lengths and numbers of segments, positions, the spans of all beams one after the other.
+
+use std::collections::HashMap;
+
+use serde_json::{Map, Value, json};
+
+use super::{Along, joined_place};
+use crate::case::presets::Preset;
+use crate::case::schema::{Span, SpanLengths};
+
+/// Number of segments of a dry beam that gives none.
+const SEGMENTS: u64 = 10;
+
+/// Completes a structure in JSON. Unreadable parts remain as they are; the schema and the checks report them.
+pub fn fill(case: &mut Value) {
+    let Some(beams) = case
+        .get("beams")
+        .and_then(Value::as_array)
+        .filter(|all| !all.is_empty())
+    else {
+        return;
+    };
+    let mut beams = beams.clone();
+    let preset = case.get("preset").map(|_| Preset::MatiaGatBeam.values());
+    let given = |pointer: &str| {
+        let own = case.pointer(pointer);
+        own.or_else(|| preset.as_ref()?.pointer(pointer)).cloned()
+    };
+    let dry = case.get("bladders").is_none_or(Value::is_null) && given("/bladders").is_none();
+    let number = if dry { "/mesh/segments" } else { "/bladders/per_row" };
+    let usual = [
+        ("length_m", given("/beam/length_m")),
+        ("segments", given(number).or_else(|| dry.then(|| SEGMENTS.into()))),
+    ];
+    let (mut spans, mut total, mut counts, mut first) = (vec![], 0.0, 0, HashMap::new());
+    for beam in beams.iter_mut().filter_map(Value::as_object_mut) {
+        if beam.get("segments").is_none()
+            && let Some(own) = segments_of_spans(beam)
+        {
+            beam.insert("segments".into(), own.into());
+        }
+        for (key, value) in &usual {
+            if let Some(value) = value
+                && !beam.contains_key(*key)
+            {
+                beam.insert((*key).into(), value.clone());
+            }
+        }
+        let (length, segments) = size(beam);
+        let name = beam.get("name").and_then(Value::as_str).unwrap_or_default();
+        first.insert(name.to_owned(), (counts, segments));
+        spans.extend(spans_of(beam, length, segments));
+        (total, counts) = (total + length, counts + segments);
+    }
+    place(&mut beams, case.get("joints"));
+    let Some(case) = case.as_object_mut() else { return };
+    for key in ["network", "start"] {
+        if let Some(part) = case.get_mut(key) {
+            number_bladders(part, &first);
+        }
+    }
+    case.insert("beams".into(), beams.into());
+    case.insert("spans".into(), spans.into());
+    set(case, "beam", "length_m", total.into());
+    set(case, "mesh", "segments", counts.into());
+    if !dry {
+        set(case, "bladders", "per_row", counts.into());
+    }
+    case.entry("ends")
+        .or_insert_with(|| json!({"root": "free", "tip": "free"}));
+}
+
+/// Sets a value of a part of the case, which a preset may supply.
+fn set(case: &mut Map<String, Value>, part: &str, key: &str, value: Value) {
+    let part = case.entry(part).or_insert_with(|| json!({}));
+    if let Some(part) = part.as_object_mut() {
+        part.insert(key.into(), value);
+    }
+}
+
+/// Sum of the segments of the spans of a beam, if all give their number.
+fn segments_of_spans(beam: &Map<String, Value>) -> Option<u64> {
+    let spans = beam.get("spans")?.as_array().filter(|spans| !spans.is_empty())?;
+    spans.iter().map(|span| span.get("segments")?.as_u64()).sum()
+}
+
+/// Length [m] and number of segments of a beam.
+fn size(beam: &Map<String, Value>) -> (f64, u64) {
+    let length = beam.get("length_m").and_then(Value::as_f64).unwrap_or(1.0);
+    let segments = beam.get("segments").and_then(Value::as_u64).unwrap_or(SEGMENTS);
+    (length, segments)
+}
+
+/// Spans of a beam, with lengths and numbers of segments.
+fn spans_of(beam: &Map<String, Value>, length: f64, segments: u64) -> Vec<Value> {
+    let given = beam
+        .get("spans")
+        .and_then(Value::as_array)
+        .filter(|spans| !spans.is_empty());
+    let Some(given) = given else {
+        let mut span = Map::new();
+        for key in ["rows", "beam", "bladders"] {
+            if let Some(value) = beam.get(key) {
+                span.insert(key.into(), value.clone());
+            }
+        }
+        span.insert("length_m".into(), length.into());
+        span.insert("segments".into(), segments.into());
+        return vec![span.into()];
+    };
+    let mut spans = given.clone();
+    let outlines = Span::outlines(&json!({"spans": given}));
+    if outlines.len() == spans.len() {
+        let lengths = SpanLengths::resolve(&outlines, length, segments as usize);
+        let both = lengths.lengths.iter().zip(&lengths.counts);
+        for (span, (length, count)) in spans.iter_mut().zip(both) {
+            if let (Some(span), Some(count)) = (span.as_object_mut(), count) {
+                span.insert("length_m".into(), (*length).into());
+                span.insert("segments".into(), (*count).into());
+            }
+        }
+    }
+    spans
+}
+
+/// Gives every beam without origin the position at which a joint puts it, the first beam 0.
+fn place(beams: &mut [Value], joints: Option<&Value>) {
+    let set = |beam: &mut Value, origin: [f64; 2]| beam["origin_m"] = json!(origin);
+    if let Some(beam) = beams.first_mut()
+        && beam.get("origin_m").is_none()
+    {
+        set(beam, [0.0; 2]);
+    }
+    let joints: Vec<Vec<&str>> = joints
+        .and_then(Value::as_array)
+        .into_iter()
+        .flatten()
+        .map(|joint| {
+            let at = joint.get("at").and_then(Value::as_array);
+            at.into_iter().flatten().filter_map(Value::as_str).collect()
+        })
+        .collect();
+    let find = |beams: &[Value], written: &str| {
+        let (name, along) = joined_place(written)?;
+        let beam = beams
+            .iter()
+            .position(|beam| beam.get("name").and_then(Value::as_str) == Some(name))?;
+        Some((beam, offset(beams[beam].as_object()?, along)?))
+    };
+    loop {
+        let mut placed = false;
+        for joint in &joints {
+            let ends: Vec<(usize, [f64; 2])> = joint.iter().filter_map(|written| find(beams, written)).collect();
+            let origin =
+                |beam: usize| -> Option<[f64; 2]> { serde_json::from_value(beams[beam].get("origin_m")?.clone()).ok() };
+            let known = ends.iter().find_map(|(beam, by)| Some((origin(*beam)?, by)));
+            let Some((origin, by)) = known else { continue };
+            let at = [0, 1].map(|k| origin[k] + by[k]);
+            for (beam, by) in ends
+                .iter()
+                .filter(|(beam, _)| beams[*beam].get("origin_m").is_none())
+                .cloned()
+                .collect::<Vec<_>>()
+            {
+                set(&mut beams[beam], [0, 1].map(|k| at[k] - by[k]));
+                placed = true;
+            }
+        }
+        if !placed {
+            return;
+        }
+    }
+}
+
+/// Vector from the root of a beam to one of its places [m].
+fn offset(beam: &Map<String, Value>, along: Along) -> Option<[f64; 2]> {
+    let (length, segments) = size(beam);
+    let angle = beam.get("angle_rad").map_or(Some(0.0), Value::as_f64)?;
+    let distance = match along {
+        Along::Root => 0.0,
+        Along::Tip => length,
+        Along::Behind(behind) => {
+            let spans = spans_of(beam, length, segments);
+            let each = spans.iter().flat_map(|span| {
+                let count = span.get("segments").and_then(Value::as_u64).unwrap_or(1);
+                let length = span.get("length_m").and_then(Value::as_f64).unwrap_or(0.0);
+                (0..count.min(segments)).map(move |_| length / count as f64)
+            });
+            each.take(behind).sum()
+        }
+    };
+    Some([angle.sin() * distance, angle.cos() * distance])
+}
+
+/// Replaces `"NAME:3"` by the number of that bladder among those of all beams.
+fn number_bladders(value: &mut Value, first: &HashMap<String, (u64, u64)>) {
+    match value {
+        Value::Array(items) => items.iter_mut().for_each(|item| number_bladders(item, first)),
+        Value::Object(members) => members.values_mut().for_each(|member| number_bladders(member, first)),
+        Value::String(text) => {
+            let number = text.rsplit_once(':').and_then(|(name, number)| {
+                let (before, segments) = first.get(name)?;
+                let number: i64 = number.parse().ok()?;
+                let there = (1..=*segments).contains(&number.unsigned_abs());
+                there.then(|| number + number.signum() * *before as i64)
+            });
+            if let Some(number) = number {
+                *value = number.into();
+            }
+        }
+        _ => {}
+    }
+}

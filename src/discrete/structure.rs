@@ -1,0 +1,145 @@
+//! Discretization of each beam by itself, and of all beams of a structure together.
+
+use super::quantities::MeshProbe;
+use super::{
+    BeamMesh, ContactPoint, MeshSections, MeshedAttachment, MeshedBody, SampledLoad, sampled_load, smooth_parts,
+};
+use crate::case::schema::Case;
+use crate::case::spans;
+use crate::model::loads::LoadKind;
+use crate::model::structure::BeamOfStructure;
+use crate::model::{Model, Structure};
+
+/// What belongs to the nodes and cells of beams.
+pub struct BeamParts {
+    /// Mesh.
+    pub mesh: BeamMesh,
+    /// Sections of cells and nodes.
+    pub sections: MeshSections,
+    /// Distributed loads.
+    pub loads: Vec<SampledLoad>,
+    /// Attachments.
+    pub attached: Vec<MeshedAttachment>,
+    /// Bodies with rotary inertia.
+    pub bodies: Vec<MeshedBody>,
+    /// Contact points.
+    pub touching: Vec<ContactPoint>,
+    /// Stiffness of the foundation at the nodes.
+    pub foundation: Vec<[f64; 2]>,
+    /// Recorded places.
+    pub probes: Vec<MeshProbe>,
+    /// Masses of the nodes [kg].
+    pub masses: Vec<f64>,
+    /// Lengths over which mass and surroundings act on the nodes [m].
+    pub lengths: Vec<f64>,
+}
+
+impl BeamParts {
+    /// Beams of a model.
+    pub fn new(case: &Case, model: &Model) -> Self {
+        match &model.structure {
+            None => Self::of_beam(case, model),
+            Some(structure) => Self::of_structure(structure, model),
+        }
+    }
+
+    fn of_beam(case: &Case, model: &Model) -> Self {
+        let lengths = spans::segment_lengths(case);
+        let jumps = smooth_parts::jumps(case, model, &lengths);
+        let order = match smooth_parts::is_steep(model) {
+            true => 2,
+            false => case.mesh.order(),
+        };
+        let mesh = BeamMesh::new(model.length, lengths, case.mesh.cells_per_segment)
+            .divided(&jumps)
+            .of_order(order);
+        Self::on_mesh(case, model, mesh)
+    }
+
+    fn on_mesh(case: &Case, model: &Model, mesh: BeamMesh) -> Self {
+        let sections = MeshSections::new(model, &mesh);
+        let loads = model.loads.iter();
+        let loads = loads
+            .map(|load| SampledLoad::new(load, model, &sections, &mesh))
+            .collect();
+        let mut lengths = mesh.node_lengths.clone();
+        mesh.lump(&mut lengths);
+        let (attached, masses) = MeshedAttachment::all(&model.attachments, &sections, &mesh, &lengths);
+        Self {
+            loads,
+            attached,
+            masses,
+            bodies: MeshedBody::all(&model.attachments, model.root_and_tip(), model.kinematics, &mesh),
+            touching: ContactPoint::all(model, &sections, &mesh),
+            foundation: sampled_load::foundation(model, &mesh),
+            probes: MeshProbe::all(case, &mesh, &sections),
+            lengths,
+            sections,
+            mesh,
+        }
+    }
+
+    /// Beams of a structure, one after the other. Signals are those of the whole model.
+    fn of_structure(structure: &Structure, model: &Model) -> Self {
+        let one = |beam: &BeamOfStructure| {
+            let mut own = beam.model.clone();
+            own.effects = model.effects.clone();
+            own.loads = model.loads[beam.of_structure[0].clone()].to_vec();
+            own.attachments = model.attachments[beam.of_structure[1].clone()].to_vec();
+            own.contacts = model.contacts[beam.of_structure[2].clone()].to_vec();
+            let lengths = spans::segment_lengths(&beam.case);
+            let portion = [beam.piece.from, beam.piece.length].map(|length| length / beam.whole);
+            let mesh = BeamMesh::new(own.length, lengths, beam.case.mesh.cells_per_segment);
+            let jumps = smooth_parts::jumps(&beam.case, &own, &mesh.segment_lengths);
+            Self::on_mesh(&beam.case, &own, mesh.divided(&jumps).of_order(2).portion(portion))
+        };
+        let each: Vec<Self> = structure.beams.iter().map(one).collect();
+        let meshes = each.iter().map(|one| one.mesh.clone()).collect();
+        let all = BeamMesh::joined(meshes);
+        let mut joined: Option<Self> = None;
+        for (k, (next, beam)) in each.into_iter().zip(&structure.beams).enumerate() {
+            let [nodes, segments] = [&all.beams[k].nodes, &all.beams[k].segments].map(|range| range.start);
+            let firsts = beam.of_structure.each_ref().map(|range| range.start);
+            let next = next.moved([nodes, segments], firsts, all.nodes);
+            joined = Some(match joined {
+                None => next,
+                Some(joined) => joined.followed_by(next),
+            });
+        }
+        let joined = joined.unwrap_or_else(|| unreachable!("a structure has a beam"));
+        let mut result = Self { mesh: all, ..joined };
+        result.attached.sort_by_key(|attached| attached.node);
+        result
+    }
+
+    /// The same on a mesh in which its first node has another number, with the numbers of the first load, attachment and contact, and with
+    /// loads on all nodes.
+    fn moved(mut self, [nodes, segments]: [usize; 2], [_, attachment, contact]: [usize; 3], all: usize) -> Self {
+        for load in &mut self.loads {
+            let cells = matches!(load.kind, LoadKind::MomentX | LoadKind::MomentZ);
+            let mut shape = vec![0.0; if cells { all - 1 } else { all }];
+            shape[nodes..nodes + load.shape.len()].copy_from_slice(&load.shape);
+            load.shape = shape;
+        }
+        self.attached.iter_mut().for_each(|one| one.shift(nodes, attachment));
+        self.bodies.iter_mut().for_each(|one| one.shift(nodes, attachment));
+        self.touching.iter_mut().for_each(|one| one.shift(nodes, contact));
+        self.probes.iter_mut().for_each(|one| one.shift(nodes, segments));
+        self
+    }
+
+    /// The same, followed by those of another beam.
+    fn followed_by(mut self, next: Self) -> Self {
+        self.sections.append(next.sections, self.mesh.nodes);
+        self.mesh = BeamMesh::joined(vec![self.mesh, next.mesh]);
+        self.loads.extend(next.loads);
+        self.attached.extend(next.attached);
+        self.bodies.extend(next.bodies);
+        self.touching.extend(next.touching);
+        self.foundation.extend(next.foundation);
+        self.probes.extend(next.probes);
+        self.masses.extend(next.masses);
+        self.lengths.extend(next.lengths);
+        self
+    }
+}

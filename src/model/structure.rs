@@ -1,0 +1,220 @@
+//! Structures: single beams with their own axes, and their joints.
+
+use std::ops::Range;
+
+use super::{EffectSet, Model, Scales, Wet, mean_section};
+use crate::case::schema::{Case, Contact, Hinge, JointKind, Load};
+use crate::case::structure::{self, Piece};
+use crate::functions::Signal;
+use crate::numerics::{Planar, Scalar, ramp};
+
+/// Beams of a structure, each with its own model, and their joints.
+#[derive(Clone, Debug)]
+pub struct Structure {
+    /// Beams, and parts of beams between joints.
+    pub beams: Vec<BeamOfStructure>,
+    /// Joints.
+    pub joints: Vec<JointOfEnds>,
+}
+
+/// A beam of a structure, or a part of one between two joints.
+#[derive(Clone, Debug)]
+pub struct BeamOfStructure {
+    /// Name of the beam.
+    pub name: String,
+    /// Its place.
+    pub piece: Piece,
+    /// Length of its whole beam [m].
+    pub whole: f64,
+    /// It as a case of its own.
+    pub case: Case,
+    /// The model of that case.
+    pub model: Model,
+    /// Its loads, attachments and contacts among those of the structure.
+    pub of_structure: [Range<usize>; 3],
+}
+
+/// A joint of ends; end `2 k` is the root of beam k, `2 k + 1` its tip.
+#[derive(Clone, Debug)]
+pub struct JointOfEnds {
+    /// Ends that turn alike, for each part of the joint that turns by itself.
+    pub groups: Vec<Vec<usize>>,
+    /// Spring, damper and stop between the first group and each other one.
+    pub hinge: Option<Hinge>,
+    /// Mass of the body at the first end [kg].
+    pub mass: f64,
+    /// Rotary inertia of the body [kg m^2].
+    pub inertia: f64,
+}
+
+impl JointOfEnds {
+    /// All ends of the joint; the first one is that of the body.
+    pub fn ends(&self) -> impl Iterator<Item = usize> + '_ {
+        self.groups.iter().flatten().copied()
+    }
+}
+
+impl Structure {
+    /// Structure of a case with these effects; none for a single beam.
+    pub fn from_case(case: &Case, effects: &EffectSet) -> Option<Self> {
+        if !case.is_structure() {
+            return None;
+        }
+        let (pieces, joined) = structure::pieces(case);
+        let mut firsts = [0; 3];
+        let beams = pieces.into_iter().map(|piece| {
+            let mut own = piece.case(case);
+            let name = &case.beams[piece.beam].name;
+            own.probes
+                .iter_mut()
+                .for_each(|probe| probe.name = format!("{name}.{}", probe.name));
+            own.loads
+                .extend(case.loads.iter().flat_map(|load| along_own_axes(load, &piece)));
+            own.contacts = case
+                .contacts
+                .iter()
+                .map(|contact| in_own_axes(contact, &piece, case))
+                .collect();
+            let model = Model::from_parts(&own, mean_section(&own), None, effects.clone());
+            let counts = [model.loads.len(), model.attachments.len(), model.contacts.len()];
+            let of_structure = [0, 1, 2].map(|k| firsts[k]..firsts[k] + counts[k]);
+            firsts = [0, 1, 2].map(|k| of_structure[k].end);
+            BeamOfStructure {
+                name: case.beams[piece.beam].name.clone(),
+                whole: case.beams[piece.beam].length_m.unwrap_or(piece.length),
+                piece,
+                case: own,
+                model,
+                of_structure,
+            }
+        });
+        let beams = beams.collect();
+        let joints = case.joints.iter().zip(joined).map(|(written, places)| {
+            let each = places.iter().map(|place| place.ends().to_vec());
+            let (groups, hinge) = match &written.kind {
+                JointKind::Rigid(_) => (vec![each.flatten().collect()], None),
+                JointKind::Hinge(hinge) => (each.collect(), Some(*hinge)),
+            };
+            JointOfEnds {
+                groups,
+                hinge,
+                mass: written.mass_kg,
+                inertia: written.rotary_inertia_kg_m2,
+            }
+        });
+        let joints = joints.collect();
+        Some(Self { beams, joints })
+    }
+
+    /// Largest scales of its beams.
+    pub fn scales(&self, wet: Option<&Wet>) -> Scales {
+        let each = self
+            .beams
+            .iter()
+            .map(|beam| Scales::estimate(&beam.case, &beam.model.section, wet));
+        each.reduce(|all, one| all.larger(&one))
+            .unwrap_or_else(|| unreachable!("a structure has a beam"))
+    }
+
+    /// Place of an end in the straight structure [m].
+    pub fn place_of(&self, end: usize) -> Planar<f64> {
+        self.beams[end / 2].piece.end(end % 2 == 1)
+    }
+}
+
+/// A load along the axes of the case, along those of a beam.
+fn along_own_axes(load: &Load, piece: &Piece) -> Vec<Load> {
+    let parts = |x: f64, z: f64, written: &crate::case::schema::Distributed| {
+        let own = piece.own(Planar { x, z });
+        let scaled = |factor: f64| {
+            let mut part = written.clone();
+            if factor != 1.0 {
+                part.signal = Signal::Product(vec![Signal::Constant(factor), part.signal]);
+            }
+            (factor != 0.0).then_some(part)
+        };
+        [scaled(own.x), scaled(own.z)]
+    };
+    let both = |[x, z]: [Option<_>; 2], across: fn(_) -> Load, along: fn(_) -> Load| -> Vec<Load> {
+        x.map(across).into_iter().chain(z.map(along)).collect()
+    };
+    match load {
+        Load::ForceXNM(written) => both(parts(1.0, 0.0, written), Load::ForceXNM, Load::ForceZNM),
+        Load::ForceZNM(written) => both(parts(0.0, 1.0, written), Load::ForceXNM, Load::ForceZNM),
+        Load::BodyXMS2(written) => both(parts(1.0, 0.0, written), Load::BodyXMS2, Load::BodyZMS2),
+        Load::BodyZMS2(written) => both(parts(0.0, 1.0, written), Load::BodyXMS2, Load::BodyZMS2),
+        Load::Gravity { x_m_s2, z_m_s2 } => {
+            let own = piece.own(Planar { x: *x_m_s2, z: *z_m_s2 });
+            vec![Load::Gravity {
+                x_m_s2: own.x,
+                z_m_s2: own.z,
+            }]
+        }
+        other => vec![other.clone()],
+    }
+}
+
+/// A wall or circle in the axes of a beam.
+fn in_own_axes(contact: &Contact, piece: &Piece, case: &Case) -> Contact {
+    let mut own = contact.clone();
+    let place = |[x, z]: [f64; 2]| {
+        let own = piece.own(Planar { x, z } - piece.origin);
+        [own.x, own.z]
+    };
+    own.name = format!("{}.{}", case.beams[piece.beam].name, contact.name);
+    own.point_m = own.point_m.map(place);
+    own.normal = own.normal.map(|[x, z]| {
+        let own = piece.own(Planar { x, z });
+        [own.x, own.z]
+    });
+    if let Some(circle) = &mut own.circle {
+        circle.center_m = place(circle.center_m);
+    }
+    own
+}
+
+/// `[E104]` Moment of a hinge at the relative angle β and its rate, and its energy: a spring, a damper, and stops beyond `β_- .. β_+`,
+///
+/// ```text
+/// M = k (β - β_0) + c β_t + k_s (s(β - β_+) - s(β_- - β))        s(x) = 0 below 0,  x²/(2 d) up to d,  x - d/2 beyond
+/// E = k (β - β_0)²/2 + k_s (S(β - β_+) + S(β_- - β))             S' = s
+/// ```
+#[derive(Clone, Copy, Debug)]
+pub struct HingeMoments<T> {
+    /// Elastic moment [N m].
+    pub elastic: T,
+    /// Moment of the damper [N m].
+    pub damping: T,
+}
+
+/// Moments of a hinge, [`HingeMoments`].
+#[inline]
+pub fn hinge_moments<T: Scalar>(hinge: &Hinge, angle: T, rate: T) -> HingeMoments<T> {
+    let mut elastic = (angle - T::constant(hinge.rest_rad)) * hinge.stiffness_n_m_rad;
+    if let Some(stop) = &hinge.stop {
+        let stops = |beyond: T| beyond.lift(|x| ramp(x, stop.smoothing_rad));
+        let [upper, lower] = [angle - T::constant(stop.to_rad), T::constant(stop.from_rad) - angle].map(stops);
+        elastic += (upper - lower) * stop.stiffness_n_m_rad;
+    }
+    HingeMoments {
+        elastic,
+        damping: rate * hinge.damping_n_m_s_rad,
+    }
+}
+
+/// Energy of a hinge [J].
+pub fn hinge_energy(hinge: &Hinge, angle: f64) -> f64 {
+    let apart = angle - hinge.rest_rad;
+    let stopped = hinge.stop.as_ref().map_or(0.0, |stop| {
+        let stored = |x: f64| {
+            let d = stop.smoothing_rad;
+            match x {
+                _ if x <= 0.0 => 0.0,
+                _ if x < d => x * x * x / (6.0 * d),
+                _ => 0.5 * x * x - 0.5 * d * x + d * d / 6.0,
+            }
+        };
+        stop.stiffness_n_m_rad * (stored(angle - stop.to_rad) + stored(stop.from_rad - angle))
+    });
+    0.5 * hinge.stiffness_n_m_rad * apart * apart + stopped
+}
