@@ -6,6 +6,7 @@ use std::ops::Range;
 use super::residual::bending::pressure_curvature;
 use super::residual::fourth_order;
 use super::residual::solid::node_stretch;
+use super::workspace::FluidState;
 use super::{System, TimeData, Workspace};
 use crate::case::schema::Effect;
 use crate::model::Kinematics;
@@ -192,6 +193,24 @@ fn stretch(system: &System, w: &Workspace<f64>, normal: &mut [f64]) {
         for (c, weight) in weights[..cells].iter().enumerate() {
             sum += weight;
             normal[part.start + c] += (c as f64 + 0.5 - sum) * slopes[usize::from(2 * c >= cells)];
+        }
+    }
+}
+
+impl FluidState<f64> {
+    /// Pressures of cells; without bladders, of junctions [Pa].
+    pub fn pressures(&self) -> &[f64] {
+        match self.pressure.is_empty() {
+            true => &self.junction,
+            false => &self.pressure,
+        }
+    }
+
+    /// Area changes of cells [m^2].
+    pub fn area_changes(&self) -> &[f64] {
+        match self.swelling.is_empty() {
+            true => &self.area,
+            false => &self.swelling,
         }
     }
 }

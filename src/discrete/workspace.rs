@@ -264,24 +264,6 @@ impl<T> CouplingVariables<T> {
     }
 }
 
-impl FluidState<f64> {
-    /// Pressures of cells; without bladders, of junctions [Pa].
-    pub fn pressures(&self) -> &[f64] {
-        match self.pressure.is_empty() {
-            true => &self.junction,
-            false => &self.pressure,
-        }
-    }
-
-    /// Area changes of cells [m^2].
-    pub fn area_changes(&self) -> &[f64] {
-        match self.swelling.is_empty() {
-            true => &self.area,
-            false => &self.swelling,
-        }
-    }
-}
-
 impl<T: Scalar> Workspace<T> {
     /// Allocates a workspace for a system.
     pub fn new(system: &System) -> Self {
