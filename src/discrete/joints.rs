@@ -1,5 +1,6 @@
 //! Joints of a structure on the mesh: ends of beams that share their motion, and the angles of joints.
 
+use super::elastic_joints::MeshedElasticJoint;
 use super::{BeamMesh, System, TimeData, Workspace};
 use crate::case::Translation;
 use crate::case::schema::{Effect, Hinge};
@@ -36,6 +37,8 @@ pub struct MeshJoints {
     pub angles: Vec<JointAngle>,
     /// Hinges with moments.
     pub hinges: Vec<MeshHinge>,
+    /// Elastic joints.
+    pub elastic: Vec<MeshedElasticJoint>,
     /// Ends with given motion: index, node and axis.
     pub driven: Vec<(usize, usize, usize)>,
     /// Number of the angle of each end.
@@ -102,7 +105,7 @@ impl<T: Scalar> JointMotion<T> {
 
 /// `R (x, z)` with `(cos, sin)` of its angle.
 #[inline]
-fn turned<T: Scalar>([cos, sin]: [f64; 2], v: Planar<T>) -> Planar<T> {
+pub(super) fn turned<T: Scalar>([cos, sin]: [f64; 2], v: Planar<T>) -> Planar<T> {
     Planar::new(v.x * cos + v.z * sin, v.z * cos - v.x * sin)
 }
 
@@ -149,11 +152,12 @@ impl MeshJoints {
             let resists = joint
                 .hinge
                 .filter(|hinge| hinge.stiffness_n_m_rad > 0.0 || hinge.damping_n_m_s_rad > 0.0 || hinge.stop.is_some());
+            let elastic = joint.elastic.is_some();
             let arms = |group: &[usize]| group.iter().any(|end| arm(structure, mesh, first, *end).is_some());
             let mut numbers = vec![];
             for (k, group) in joint.groups.iter().enumerate() {
                 let inertia_of_group = if k == 0 { joint.inertia } else { 0.0 };
-                if group.len() < 2 && resists.is_none() && inertia_of_group == 0.0 {
+                if group.len() < 2 && resists.is_none() && !elastic && inertia_of_group == 0.0 {
                     continue; // a free end
                 }
                 let number = all.angles.len();
@@ -164,8 +168,10 @@ impl MeshJoints {
                 all.angles.push(JointAngle {
                     inertia: inertia_of_group,
                     ends: group.iter().map(|end| (ends[*end].node, -ends[*end].outward)).collect(),
-                    moves: inertia && (inertia_of_group > 0.0 || arms(group)),
-                    damped: damped || resists.is_some_and(|hinge| hinge.damping_n_m_s_rad > 0.0),
+                    moves: inertia && (inertia_of_group > 0.0 || (!elastic && arms(group))),
+                    damped: damped
+                        || resists.is_some_and(|hinge| hinge.damping_n_m_s_rad > 0.0)
+                        || joint.elastic.is_some_and(|law| law.damping != [[0.0; 3]; 3]),
                 });
             }
             if let (Some(law), [first, others @ ..]) = (resists, &numbers[..]) {
@@ -174,16 +180,36 @@ impl MeshJoints {
                     law,
                 }));
             }
-            for end in joint.ends().skip(1) {
-                let [own, to] = [end, first].map(|end| structure.beams[end / 2].piece.angle);
-                let (sin, cos) = (to - own).sin_cos();
-                let angle = all.of_ends[end];
-                all.ties.push(Tie {
-                    node: ends[end].node,
-                    to: ends[first].node,
-                    turn: [cos, sin],
-                    arm: angle.zip(arm(structure, mesh, first, end)),
-                });
+            let turn = |from: usize, to: usize| {
+                let [from, to] = [from, to].map(|end| structure.beams[end / 2].piece.angle);
+                let (sin, cos) = (from - to).sin_cos();
+                [cos, sin]
+            };
+            let firsts = joint.groups.iter().filter_map(|group| group.first().copied());
+            if let (Some(law), [own, others @ ..]) = (joint.elastic, &numbers[..]) {
+                all.elastic
+                    .extend(others.iter().zip(firsts.clone().skip(1)).map(|(other, end)| {
+                        MeshedElasticJoint {
+                            nodes: [ends[first].node, ends[end].node],
+                            angles: [*own, *other],
+                            turn: turn(end, first),
+                            apart: structure.beams[first / 2]
+                                .piece
+                                .own(structure.place_of(end) - structure.place_of(first)),
+                            law,
+                        }
+                    }));
+            }
+            for (group, of_group) in joint.groups.iter().zip(firsts) {
+                let to = if elastic { of_group } else { first };
+                for end in group.iter().copied().filter(|end| *end != to) {
+                    all.ties.push(Tie {
+                        node: ends[end].node,
+                        to: ends[to].node,
+                        turn: turn(to, end),
+                        arm: all.of_ends[end].zip(arm(structure, mesh, to, end)),
+                    });
+                }
             }
         }
         all
@@ -246,6 +272,7 @@ impl MeshJoints {
             r[own.moment(other)] += moment;
             r[own.moment(first)] -= moment;
         }
+        self.elastic.iter().for_each(|one| one.rows(system, w, r));
         let lines = &system.layout.lines;
         for tie in &self.ties {
             let rows = [0, 1].map(|axis| lines[axis].momentum(tie.node).zip(lines[axis].momentum(tie.to)));
@@ -301,7 +328,7 @@ impl MeshJoints {
         });
         let bodies = self.angles.iter().zip(&shape.joints.rate);
         [
-            hinges.sum(),
+            hinges.sum::<f64>() + self.elastic.iter().map(|one| one.energy(w)).sum::<f64>(),
             bodies.map(|(angle, rate)| 0.5 * angle.inertia * rate * rate).sum(),
         ]
     }
@@ -312,10 +339,9 @@ impl MeshJoints {
             let [first, other] = hinge.angles.map(|angle| w.shape.joints.rate[angle]);
             other - first
         };
-        self.hinges
-            .iter()
-            .map(|hinge| hinge.law.damping_n_m_s_rad * rate(hinge).powi(2))
-            .sum()
+        let hinges = self.hinges.iter();
+        let hinges = hinges.map(|hinge| hinge.law.damping_n_m_s_rad * rate(hinge).powi(2));
+        hinges.sum::<f64>() + self.elastic.iter().map(|one| one.loss(w)).sum::<f64>()
     }
 }
 

@@ -6,6 +6,7 @@ pub mod attached;
 pub mod bodies;
 pub mod contact_points;
 pub mod crossing;
+mod elastic_joints;
 pub mod euler_bernoulli_modes;
 pub mod extrema;
 pub mod fluid_mesh;

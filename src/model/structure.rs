@@ -3,7 +3,7 @@
 use std::ops::Range;
 
 use super::{EffectSet, Model, Scales, Wet, mean_section};
-use crate::case::schema::{Case, Contact, Hinge, JointKind, Load};
+use crate::case::schema::{Attachment, Case, Contact, ElasticJoint, Hinge, JointKind, Load};
 use crate::case::structure::{self, Piece};
 use crate::functions::Signal;
 use crate::numerics::{Planar, Scalar, ramp};
@@ -41,8 +41,8 @@ pub struct JointOfEnds {
     pub groups: Vec<Vec<usize>>,
     /// Spring, damper and stop between the first group and each other one.
     pub hinge: Option<Hinge>,
-    /// Mass of the body at the first end [kg].
-    pub mass: f64,
+    /// Forces and moments between the first group and each other one; none if all are at one place or rigid.
+    pub elastic: Option<ElasticJoint>,
     /// Rotary inertia of the body [kg m^2].
     pub inertia: f64,
 }
@@ -62,7 +62,11 @@ impl Structure {
         }
         let (pieces, joined) = structure::pieces(case);
         let mut firsts = [0; 3];
-        let beams = pieces.into_iter().map(|piece| {
+        let bodies = case.joints.iter().zip(&joined).filter(|(joint, _)| joint.mass_kg > 0.0);
+        let bodies: Vec<(usize, f64)> = bodies
+            .filter_map(|(joint, places)| Some((places.first()?.ends()[0], joint.mass_kg)))
+            .collect();
+        let beams = pieces.into_iter().enumerate().map(|(number, piece)| {
             let mut own = piece.case(case);
             let name = &case.beams[piece.beam].name;
             own.probes
@@ -70,6 +74,16 @@ impl Structure {
                 .for_each(|probe| probe.name = format!("{name}.{}", probe.name));
             own.loads
                 .extend(case.loads.iter().flat_map(|load| along_own_axes(load, &piece)));
+            // the mass of a body acts at the end of its joint
+            own.attachments.extend(
+                bodies
+                    .iter()
+                    .filter(|(end, _)| end / 2 == number)
+                    .map(|(end, mass)| Attachment {
+                        mass_kg: *mass,
+                        ..Attachment::at((end % 2) as f64)
+                    }),
+            );
             own.contacts = case
                 .contacts
                 .iter()
@@ -91,14 +105,19 @@ impl Structure {
         let beams = beams.collect();
         let joints = case.joints.iter().zip(joined).map(|(written, places)| {
             let each = places.iter().map(|place| place.ends().to_vec());
-            let (groups, hinge) = match &written.kind {
-                JointKind::Rigid(_) => (vec![each.flatten().collect()], None),
-                JointKind::Hinge(hinge) => (each.collect(), Some(*hinge)),
+            let (hinge, elastic) = match &written.kind {
+                JointKind::Rigid(_) => (None, None),
+                JointKind::Hinge(hinge) => (Some(*hinge), None),
+                JointKind::Elastic(elastic) => (None, Some(*elastic)),
+                JointKind::Slider(slider) => (None, Some(slider.elastic())),
             };
             JointOfEnds {
-                groups,
+                groups: match written.kind {
+                    JointKind::Rigid(_) => vec![each.flatten().collect()],
+                    _ => each.collect(),
+                },
                 hinge,
-                mass: written.mass_kg,
+                elastic,
                 inertia: written.rotary_inertia_kg_m2,
             }
         });
@@ -200,6 +219,20 @@ pub fn hinge_moments<T: Scalar>(hinge: &Hinge, angle: T, rate: T) -> HingeMoment
         elastic,
         damping: rate * hinge.damping_n_m_s_rad,
     }
+}
+
+/// `[E106]` Force and moment of an elastic joint: those of the displacement d and the rotation β of its second place relative to the first,
+/// along the axes of the first beam, which turn with the angle φ_1 of the joint there,
+///
+/// ```text
+/// d = R(-φ_1) (x_2 - x_1) - (X_2 - X_1)      β = φ_2 - φ_1      (F, M) = K (d, β) + C (d, β)_t      E = (d, β)·K (d, β)/2
+/// ```
+#[inline]
+pub fn elastic_forces<T: Scalar>(law: &ElasticJoint, by: [T; 3], rates: [T; 3]) -> [T; 3] {
+    let row = |matrix: &[[f64; 3]; 3], of: &[T; 3], i: usize| {
+        of[0] * matrix[i][0] + of[1] * matrix[i][1] + of[2] * matrix[i][2]
+    };
+    [0, 1, 2].map(|i| row(&law.stiffness, &by, i) + row(&law.damping, &rates, i))
 }
 
 /// Energy of a hinge [J].

@@ -208,6 +208,16 @@ fn located(case: &Case, written: &str, pointer: &str, faults: &mut Violations) -
 }
 
 fn values(j: usize, joint: &Joint, faults: &mut Violations) {
+    if let JointKind::Elastic(elastic) = &joint.kind {
+        for (key, matrix) in [("stiffness", &elastic.stiffness), ("damping", &elastic.damping)] {
+            if let Some(what) = no_energy(matrix) {
+                let fault = Violation::new(Code::Range, format!("/joints/{j}/kind/elastic/{key}"), what);
+                faults.push(
+                    fault.allowed("a symmetric matrix without negative eigenvalues: [[a, 0, 0], [0, b, 0], [0, 0, c]]"),
+                );
+            }
+        }
+    }
     if let JointKind::Hinge(hinge) = &joint.kind
         && let Some(stop) = &hinge.stop
         && stop.from_rad >= stop.to_rad
@@ -219,6 +229,19 @@ fn values(j: usize, joint: &Joint, faults: &mut Violations) {
         );
         faults.push(Violation::new(Code::Range, pointer, what).allowed("from_rad below to_rad"));
     }
+}
+
+/// Reason that a matrix is not that of an energy; none if it is.
+fn no_energy(matrix: &[[f64; 3]; 3]) -> Option<String> {
+    for (i, j) in [(0, 1), (0, 2), (1, 2)] {
+        if matrix[i][j] != matrix[j][i] {
+            return Some(format!("rows {} and {} of the matrix are not symmetric", i + 1, j + 1));
+        }
+    }
+    let of = nalgebra::Matrix3::from_fn(|i, j| matrix[i][j]);
+    let values = of.symmetric_eigenvalues();
+    let (least, most) = (values.min(), values.amax());
+    (least < -1e-12 * most).then(|| format!("the matrix has the negative eigenvalue {least:.3e}"))
 }
 
 /// Checks that hinged places meet, and that joints do not divide spans with values along them.

@@ -81,7 +81,7 @@ impl PlacedEnds {
     }
 }
 
-/// A joint of two or more beams, at ends of theirs or between segments. Beams meet at one position; only in a rigid joint may they be
+/// A joint of two or more beams, at ends of theirs or between segments. Beams of a hinge meet at one position; in other joints they may be
 /// apart, as at a rigid body.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
@@ -109,6 +109,70 @@ pub enum JointKind {
     Rigid(RigidJoint),
     /// Every beam turns by itself.
     Hinge(Hinge),
+    /// Springs in all directions between the first beam and each further one.
+    Elastic(ElasticJoint),
+    /// Each further beam slides along a slot of the first one, without turning in it.
+    Slider(Slider),
+}
+
+/// An elastic joint: force and moment by the displacement and the rotation of a further beam relative to the first, along the axes of the
+/// first one, which turn with it: (across, along, rotation).
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct ElasticJoint {
+    /// Stiffness matrix, symmetric and without negative energy, [[N/m, N/m, N/rad], [N/m, N/m, N/rad], [N, N, N m/rad]].
+    pub stiffness: [[f64; 3]; 3],
+    /// Damping matrix, the same per velocity; absent: none.
+    #[serde(default, skip_serializing_if = "is_undamped")]
+    pub damping: [[f64; 3]; 3],
+}
+
+/// True for a joint without damping, the default that a case may omit.
+fn is_undamped(damping: &[[f64; 3]; 3]) -> bool {
+    *damping == [[0.0; 3]; 3]
+}
+
+/// A slider: a slot along the first beam or at an angle to it. Its walls are elastic; the stiffer they are, the less the further beam leaves
+/// the slot.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Slider {
+    /// Angle of the slot to the straight first beam, from its z towards its x [rad].
+    #[serde(default, skip_serializing_if = "is_zero")]
+    pub angle_rad: f64,
+    /// Stiffness of its walls across [N/m].
+    #[schemars(extend("exclusiveMinimum" = 0))]
+    pub wall_stiffness_n_m: f64,
+    /// Stiffness against turning in it; 0 for a pin in a slot [N m/rad].
+    #[serde(default, skip_serializing_if = "is_zero")]
+    #[schemars(range(min = 0.0))]
+    pub turning_stiffness_n_m_rad: f64,
+    /// Stiffness of a spring along it [N/m].
+    #[serde(default, skip_serializing_if = "is_zero")]
+    #[schemars(range(min = 0.0))]
+    pub stiffness_n_m: f64,
+    /// Damping along it [N s/m].
+    #[serde(default, skip_serializing_if = "is_zero")]
+    #[schemars(range(min = 0.0))]
+    pub damping_n_s_m: f64,
+}
+
+impl Slider {
+    /// Elastic joint with the same forces.
+    pub fn elastic(&self) -> ElasticJoint {
+        let along = [self.angle_rad.sin(), self.angle_rad.cos()];
+        let across = [along[1], -along[0]];
+        let (mut stiffness, mut damping) = ([[0.0; 3]; 3], [[0.0; 3]; 3]);
+        for i in 0..2 {
+            for j in 0..2 {
+                let parts = [across[i] * across[j], along[i] * along[j]];
+                stiffness[i][j] = self.wall_stiffness_n_m * parts[0] + self.stiffness_n_m * parts[1];
+                damping[i][j] = self.damping_n_s_m * parts[1];
+            }
+        }
+        stiffness[2][2] = self.turning_stiffness_n_m_rad;
+        ElasticJoint { stiffness, damping }
+    }
 }
 
 /// A rigid joint; it has no values.
