@@ -139,6 +139,9 @@ impl Scalar for DependencyTracer {
     fn constant(_: f64) -> Self {
         NOTHING
     }
+    fn value(&self) -> Option<f64> {
+        None
+    }
     fn sqrt(self) -> Self {
         self
     }

@@ -9,7 +9,10 @@ use crate::numerics::Planar;
 /// compared. Does not allocate.
 pub fn first(system: &System, w: &Workspace<f64>) -> Option<[f64; 2]> {
     let cells = system.mesh.cells;
-    if system.model.kinematics != Kinematics::FiniteRotation || system.model.structure.is_some() {
+    if system.model.kinematics != Kinematics::FiniteRotation
+        || system.model.structure.is_some()
+        || !system.beam_contacts.is_empty()
+    {
         return None;
     }
     let u = &w.motion.u[..=cells];

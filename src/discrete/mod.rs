@@ -3,6 +3,7 @@
 
 pub mod angle_unwrapping;
 pub mod attached;
+pub mod beam_contacts;
 pub mod bodies;
 pub mod contact_points;
 pub mod crossing;
@@ -43,6 +44,7 @@ use crate::model::{Model, Storage, audit};
 use crate::numerics::Scalar;
 
 pub use attached::MeshedAttachment;
+use beam_contacts::MeshBeamContact;
 pub use bodies::MeshedBody;
 pub use contact_points::ContactPoint;
 pub use fluid_mesh::FluidMesh;
@@ -79,6 +81,8 @@ pub struct System {
     pub attached: Vec<MeshedAttachment>,
     /// Attached bodies with rotary inertia.
     pub bodies: Vec<MeshedBody>,
+    /// Contacts of beams with each other.
+    pub beam_contacts: Vec<MeshBeamContact>,
     /// Contact points of the beam, ordered by place.
     pub touching: Vec<ContactPoint>,
     /// Stiffness of the foundation at the nodes, across and along [N/m]; empty without a foundation.
@@ -324,12 +328,14 @@ impl System {
             && parts.foundation.is_empty()
             && parts.attached.is_empty()
             && parts.bodies.is_empty()
-            && parts.touching.is_empty();
+            && parts.touching.is_empty()
+            && model.beam_contacts.is_empty();
         let surrounded = model.surroundings.is_some() || model.frame.is_some();
         let mut masses_in_motion = parts.masses.clone();
         for tie in &joints.ties {
             masses_in_motion[tie.to] += std::mem::take(&mut masses_in_motion[tie.node]);
         }
+        let beam_contacts = MeshBeamContact::all(&model, &mesh, &parts.sections);
         Self {
             stands_alone: nothing_attached && !model.section.resists_motion() && !surrounded,
             model,
@@ -342,6 +348,7 @@ impl System {
             loads,
             attached: parts.attached,
             bodies: parts.bodies,
+            beam_contacts,
             touching: parts.touching,
             foundation: parts.foundation,
             masses: parts.masses,

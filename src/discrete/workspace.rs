@@ -127,6 +127,10 @@ pub struct Forces<T> {
     pub relaxing_normal: Vec<T>,
     /// Relaxing part of the shear force [N].
     pub relaxing_shear: Vec<T>,
+    /// Forces of beams on each other at nodes, elastic ones and those with losses [N]; empty without.
+    pub between: Vec<[Planar<T>; 2]>,
+    /// Positions of nodes for these [m].
+    pub places: Vec<Planar<f64>>,
     /// Moment that rotates the section of each cell [N m]; empty without shear.
     pub turning: Vec<T>,
     /// Addition of the normal force to the moment in bent cells, [E79] [N m]; empty without it.
@@ -285,6 +289,7 @@ impl<T: Scalar> Workspace<T> {
         let compressed = usize::from(wet.is_some_and(|wet| wet.compression.is_some()));
         let nonlinear = usize::from(system.model.strain_energy().is_some());
         let excess = usize::from(!system.layout.coupling.excess_area.is_empty());
+        let touching = if system.beam_contacts.is_empty() { 0 } else { n };
         let viscous = usize::from(system.mesh.fourth && system.damped) * sheared;
         // Constant values are set here.
         let kept = fluid.map_or(&[][..], |f| &f.area_at_start);
@@ -337,6 +342,8 @@ impl<T: Scalar> Workspace<T> {
                 relaxing_moment: zeros(relaxation.curvature.len().min(n)),
                 relaxing_normal: zeros(relaxation.stretch.len().min(c)),
                 relaxing_shear: zeros(relaxation.shear.len().min(c)),
+                between: vec![[Planar::zero(); 2]; touching],
+                places: vec![Planar::default(); touching],
                 turning: zeros(sheared),
                 arc_moment: zeros(if bent { n } else { 0 }),
                 side_moment: vec![[T::zero(); 2]; system.sections.offset_borders.len()],

@@ -1,6 +1,6 @@
 //! Contact of the beam with fixed walls and circles.
 
-use crate::case::schema::{Case, Contact as Written};
+use crate::case::schema::{BeamContact, Case, Contact as Written};
 use crate::case::spans::SegmentValues;
 use crate::numerics::{Planar, Scalar, ramp};
 
@@ -54,6 +54,49 @@ pub struct ContactLaw {
     pub reach: f64,
     /// True if r is half the height of the section at each place.
     pub follows_section: bool,
+    /// `k` [Pa]; at one place [N/m].
+    pub stiffness: f64,
+    /// `d` [m].
+    pub smoothing: f64,
+    /// `c` [s/m].
+    pub damping: f64,
+    /// `μ`.
+    pub friction: f64,
+    /// `v_0` [m/s].
+    pub slow: f64,
+}
+
+/// Contact of beams with each other.
+#[derive(Clone, Debug, PartialEq)]
+pub struct BeamContactLaw {
+    /// Name.
+    pub name: String,
+    /// Names of both beams; none: all.
+    pub between: Option<[String; 2]>,
+    /// Forces per length.
+    pub pressing: PressingLaw,
+}
+
+impl BeamContactLaw {
+    /// Law of a contact as written.
+    pub fn new(written: &BeamContact) -> Self {
+        Self {
+            name: written.name.clone(),
+            between: written.between.clone(),
+            pressing: PressingLaw {
+                stiffness: written.stiffness_pa,
+                smoothing: written.smoothing_m,
+                damping: written.damping_s_m,
+                friction: written.friction_coefficient,
+                slow: written.friction_velocity_m_s.unwrap_or(1.0),
+            },
+        }
+    }
+}
+
+/// Forces of surfaces that press on each other, [E61]: elastic ones, damping and friction.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PressingLaw {
     /// `k` [Pa]; at one place [N/m].
     pub stiffness: f64,
     /// `d` [m].
@@ -160,6 +203,29 @@ impl ContactLaw {
     #[inline]
     pub fn forces<T: Scalar>(&self, at: Planar<T>, velocity: Planar<T>, reach: f64) -> ContactForces<T> {
         let (depth, normal) = self.depth(at, reach);
+        self.pressing().forces(depth, normal, velocity)
+    }
+
+    /// `k S(g)`.
+    pub fn energy(&self, depth: f64) -> f64 {
+        self.pressing().energy(depth)
+    }
+
+    fn pressing(&self) -> PressingLaw {
+        PressingLaw {
+            stiffness: self.stiffness,
+            smoothing: self.smoothing,
+            damping: self.damping,
+            friction: self.friction,
+            slow: self.slow,
+        }
+    }
+}
+
+impl PressingLaw {
+    /// Contact forces at a depth [m] along a normal, with the velocity of the pressed point relative to the face [m/s].
+    #[inline]
+    pub fn forces<T: Scalar>(&self, depth: T, normal: Planar<T>, velocity: Planar<T>) -> ContactForces<T> {
         let elastic = depth.lift(|g| ramp(g, self.smoothing)) * self.stiffness;
         let mut pressed = ContactForces {
             elastic: normal.times(elastic),

@@ -48,7 +48,7 @@ pub use beam::Section;
 pub use bladder::AreaLaw;
 pub use bladder_wall_contact::WallClosing;
 pub use compression::Compression;
-pub use contact::{ContactFace, ContactLaw};
+pub use contact::{BeamContactLaw, ContactFace, ContactLaw};
 pub use coupling::CouplingLaw;
 pub use effects::{Decision, EffectScene, EffectSet};
 pub use kinematics::Kinematics;
@@ -95,6 +95,8 @@ pub struct Model {
     pub foundation: [Option<Profile>; 2],
     /// Walls and circles for contact.
     pub contacts: Vec<ContactLaw>,
+    /// Contact of beams with each other.
+    pub beam_contacts: Vec<BeamContactLaw>,
     /// Branches of a relaxing solid.
     pub relaxation: Vec<Branch>,
     /// Ambient fluid.
@@ -224,6 +226,7 @@ impl Model {
                 .as_ref()
                 .map_or([None, None], |one| one.stiffness().map(|(_, profile)| profile.cloned())),
             contacts: ContactLaw::all(case, &segments),
+            beam_contacts: case.beam_contacts.iter().map(BeamContactLaw::new).collect(),
             relaxation: (case.beam.viscoelasticity.as_ref())
                 .and_then(Viscoelasticity::branches)
                 .unwrap_or_default(),

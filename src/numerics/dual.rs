@@ -127,6 +127,10 @@ impl<const L: usize> SubAssign for Dual<L> {
 
 impl<const L: usize> Scalar for Dual<L> {
     #[inline(always)]
+    fn value(&self) -> Option<f64> {
+        Some(self.value)
+    }
+    #[inline(always)]
     fn constant(value: f64) -> Self {
         Self {
             value,

@@ -19,6 +19,8 @@ pub trait Scalar:
 {
     /// A constant.
     fn constant(value: f64) -> Self;
+    /// Its value; none for a number that only records what it depends on.
+    fn value(&self) -> Option<f64>;
     /// Square root.
     fn sqrt(self) -> Self;
     /// Angle of the vector `(x, self)`.
@@ -43,6 +45,10 @@ impl Scalar for f64 {
     #[inline(always)]
     fn constant(value: f64) -> Self {
         value
+    }
+    #[inline(always)]
+    fn value(&self) -> Option<f64> {
+        Some(*self)
     }
     #[inline(always)]
     fn sqrt(self) -> Self {

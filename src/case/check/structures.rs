@@ -17,6 +17,7 @@ const NEAR: f64 = 1e-6;
 const OF_A_BEAM: [&str; 4] = ["ends", "loads", "attachments", "probes"];
 
 pub(super) fn check(case: &Case, faults: &mut Violations) {
+    beam_contacts(case, faults);
     if !case.is_structure() {
         if !case.joints.is_empty() {
             let fault = Violation::new(Code::Together, "/joints", "joints without \"beams\"");
@@ -46,6 +47,44 @@ pub(super) fn check(case: &Case, faults: &mut Violations) {
         no_jumps(k, &case.beams[k], faults);
     }
     places(case, faults);
+}
+
+fn beam_contacts(case: &Case, faults: &mut Violations) {
+    let mut known = HashMap::new();
+    for (k, contact) in case.beam_contacts.iter().enumerate() {
+        let pointer = format!("/beam_contacts/{k}");
+        if let Some(first) = known.insert(&contact.name, k) {
+            let what = format!(
+                "two contacts have the name \"{}\", the first is /beam_contacts/{first}",
+                contact.name
+            );
+            faults.push(Violation::new(Code::Together, format!("{pointer}/name"), what).hint("rename one"));
+        }
+        if contact.friction_coefficient > 0.0 && contact.friction_velocity_m_s.is_none() {
+            let what = "friction without the velocity below which it falls";
+            let fault = Violation::new(Code::Missing, &pointer, what);
+            faults.push_at_key(fault.hint("give friction_velocity_m_s, far below the velocity of sliding"));
+        }
+        let names = || case.beams.iter().map(|beam| beam.name.as_str());
+        for (i, name) in contact.between.iter().flatten().enumerate() {
+            if !case.is_structure() {
+                let fault = Violation::new(Code::Name, format!("{pointer}/between"), "a case without \"beams\"");
+                faults.push_at_key(fault.hint("leave \"between\" out: the beam touches itself"));
+                break;
+            }
+            if !names().any(|known| known == name) {
+                let fault = Violation::new(
+                    Code::Name,
+                    format!("{pointer}/between/{i}"),
+                    format!("there is no beam \"{name}\""),
+                );
+                faults.push(Violation {
+                    nearest: nearest(name, names()),
+                    ..fault.allowed(names().collect::<Vec<_>>().join(", "))
+                });
+            }
+        }
+    }
 }
 
 fn names(case: &Case, faults: &mut Violations) {

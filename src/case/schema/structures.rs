@@ -216,6 +216,37 @@ pub struct HingeStop {
     pub smoothing_rad: f64,
 }
 
+/// Contact of beams with each other, or of one with itself: their surfaces press on each other where they overlap. Places of one beam, or of
+/// two joined ones, that are nearer to each other than half a turn of the least circle in the straight structure do not touch.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct BeamContact {
+    /// Name in outputs.
+    #[schemars(length(min = 1))]
+    pub name: String,
+    /// Names of both beams; twice the same for a beam that touches itself. Absent: all beams, also themselves.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub between: Option<[String; 2]>,
+    /// Stiffness along the beams: force per length over the depth of overlap [Pa].
+    #[schemars(extend("exclusiveMinimum" = 0))]
+    pub stiffness_pa: f64,
+    /// Depth over which the stiffness comes in [m].
+    #[schemars(extend("exclusiveMinimum" = 0))]
+    pub smoothing_m: f64,
+    /// Damping, as of an obstacle [s/m].
+    #[serde(default, skip_serializing_if = "is_zero")]
+    #[schemars(range(min = 0.0))]
+    pub damping_s_m: f64,
+    /// Coulomb's coefficient of friction.
+    #[serde(default, skip_serializing_if = "is_zero")]
+    #[schemars(range(min = 0.0))]
+    pub friction_coefficient: f64,
+    /// Velocity below which friction falls with the velocity instead of holding [m/s].
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schemars(extend("exclusiveMinimum" = 0))]
+    pub friction_velocity_m_s: Option<f64>,
+}
+
 impl Case {
     /// True if the case has several beams, or one that is placed.
     pub fn is_structure(&self) -> bool {

@@ -3,7 +3,7 @@
 use super::{Along, joined_place};
 use crate::case::schema::{Case, End, EndConditions, Ends, Mesh, PlacedBeam, Span, Start};
 use crate::case::spans;
-use crate::numerics::Planar;
+use crate::numerics::{Planar, Scalar};
 
 /// A beam of a structure, or the part of one between two joints.
 #[derive(Clone, Debug)]
@@ -55,21 +55,15 @@ impl Piece {
     }
 
     /// Components of a vector along the axes of the piece.
-    pub fn own(&self, v: Planar<f64>) -> Planar<f64> {
+    pub fn own<T: Scalar>(&self, v: Planar<T>) -> Planar<T> {
         let z = self.direction();
-        Planar {
-            x: v.x * z.z - v.z * z.x,
-            z: v.x * z.x + v.z * z.z,
-        }
+        Planar::new(v.x * z.z - v.z * z.x, v.x * z.x + v.z * z.z)
     }
 
     /// Vector with these components along the axes of the piece.
-    pub fn turned(&self, v: Planar<f64>) -> Planar<f64> {
+    pub fn turned<T: Scalar>(&self, v: Planar<T>) -> Planar<T> {
         let z = self.direction();
-        Planar {
-            x: v.x * z.z + v.z * z.x,
-            z: v.z * z.z - v.x * z.x,
-        }
+        Planar::new(v.x * z.z + v.z * z.x, v.z * z.z - v.x * z.x)
     }
 
     /// The piece as a case of its own: the section of its segments, the conditions at its free ends, and the loads, attachments and probes of

@@ -19,7 +19,7 @@ pub use solid::reaction;
 use crate::case::schema::Effect;
 use serde::{Deserialize, Serialize};
 
-use super::{CompleteState, System, TimeData, Workspace, contact_points, readings, residual};
+use super::{CompleteState, System, TimeData, Workspace, beam_contacts, contact_points, readings, residual};
 
 /// Rates that are integrated during a run, for the balances.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -244,7 +244,7 @@ pub fn energies(system: &System, now: &TimeData, w: CompleteState) -> StoredEner
     e.compression = compressed::energy(system, &w) + held;
     e.accumulators = walls;
     e.tubes = tubes::kinetic(system, &w);
-    e.contacts = contact_points::energy(system, &w);
+    e.contacts = contact_points::energy(system, &w) + beam_contacts::energy(system, &w);
     e.springs = system
         .attached
         .iter()

@@ -5,7 +5,7 @@ use super::probes::{HistoryColumn, key};
 use super::reactions;
 use crate::case::wiring::bladder_label;
 use crate::discrete::ledger::ports;
-use crate::discrete::{FluidMesh, System, contact_points};
+use crate::discrete::{FluidMesh, System, beam_contacts, contact_points};
 use crate::model::network::LinkKind;
 
 /// Columns of all ports, accumulators, contacts and reactions of a system; with `at_rest` those of a state at rest.
@@ -38,6 +38,19 @@ pub fn columns(system: &System, at_rest: bool) -> Vec<HistoryColumn> {
                 "resultant force along the straight beam on the beam by",
             ));
         }
+    }
+    let between = short("beam_contact", system.model.beam_contacts.iter().map(|one| &one.name));
+    for (name, short) in between {
+        all.push(HistoryColumn {
+            name: format!("{short}_normal_force"),
+            unit: "N",
+            about: format!("force between the beams of the contact \"{name}\""),
+        });
+        all.push(HistoryColumn {
+            name: format!("{short}_depth"),
+            unit: "m",
+            about: format!("largest depth, below 0 least distance, of the surfaces of the contact \"{name}\""),
+        });
     }
     all
 }
@@ -169,6 +182,11 @@ pub fn values(look: &StateView, integrals: Option<&[f64]>, out: &mut [f64]) {
             put(felt.force.x);
             put(felt.force.z);
         }
+    }
+    for number in 0..look.system.beam_contacts.len() {
+        let felt = beam_contacts::felt(look.system, &look.w, number);
+        put(felt.normal);
+        put(felt.depth);
     }
 }
 

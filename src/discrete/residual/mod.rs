@@ -17,7 +17,7 @@ pub mod timoshenko;
 mod unpack;
 pub mod von_karman;
 
-use super::{System, TimeData, Workspace};
+use super::{System, TimeData, Workspace, beam_contacts};
 use crate::case::schema::Effect;
 use crate::model::Kinematics;
 use crate::numerics::Scalar;
@@ -91,6 +91,7 @@ pub fn beyond_strains<T: Scalar>(system: &System, now: &TimeData, w: &mut Worksp
         }
     }
     momentum::published_forces(system, now, w);
+    beam_contacts::forces(system, w);
     fluid::flows(system, now, w);
 }
 

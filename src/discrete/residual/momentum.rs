@@ -6,7 +6,7 @@ use super::{ambient_fluid, rotating_frame};
 use crate::discrete::attached::at_node;
 use crate::discrete::ledger::EnergyRate;
 use crate::discrete::mesh::BeamEnd;
-use crate::discrete::{System, TimeData, Workspace, bodies, contact_points};
+use crate::discrete::{System, TimeData, Workspace, beam_contacts, bodies, contact_points};
 use crate::model::Kinematics;
 use crate::numerics::{Planar, Scalar, wide};
 
@@ -137,6 +137,7 @@ pub fn outer_forces<T: Scalar>(
     if !system.bodies.is_empty() {
         bodies::forces(system, now, w, node, &mut each);
     }
+    beam_contacts::on_node(w, node, &mut each);
     if !system.touching.is_empty() {
         contact_points::forces(system, w, node, &mut each);
     }
