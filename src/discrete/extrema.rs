@@ -118,8 +118,13 @@ impl MonitoredValues {
                 0.5 * (w.motion.v[a].x + w.motion.v[b].x),
             ],
         );
-        set(MonitoredQuantity::Largest1, largest(&w.motion, 0));
-        set(MonitoredQuantity::Largest3, largest(&w.motion, 1));
+        // the axes of several beams differ: sizes only
+        let sized = |[value, rate]: Moving| match system.model.structure.is_some() {
+            true => [value.abs(), rate * value.signum()],
+            false => [value, rate],
+        };
+        set(MonitoredQuantity::Largest1, sized(largest(system, &w.motion, 0)));
+        set(MonitoredQuantity::Largest3, sized(largest(system, &w.motion, 1)));
         (g.deflection, g.moved) = moved(system, w);
         let (strain, node) = evaluate::largest_strain(system, now, w);
         g.strained = node;
@@ -215,14 +220,14 @@ fn extremes(values: &[f64], counts: impl Fn(usize) -> bool) -> (usize, usize) {
 
 /// Displacement of largest magnitude, with its rate, from the parabola through the largest nodal value and its neighbors. The parabola
 /// reduces differences between meshes of different size.
-fn largest(motion: &Motion<f64>, axis: usize) -> Moving {
+fn largest(system: &System, motion: &Motion<f64>, axis: usize) -> Moving {
     let mut most = 0;
     for (i, u) in motion.u.iter().enumerate() {
         if u[axis].abs() > motion.u[most][axis].abs() {
             most = i;
         }
     }
-    if most == 0 || most + 1 == motion.u.len() {
+    if system.mesh.end_at(most).is_some() {
         return [motion.u[most][axis], motion.v[most][axis]];
     }
     let parabola = |field: &[Planar<f64>]| {

@@ -343,10 +343,7 @@ fn no_jumps(k: usize, beam: &PlacedBeam, faults: &mut Violations) {
     for (end, name) in beam.ends.both().into_iter().zip(["root", "tip"]) {
         let Some(end) = end else { continue };
         let (form, given) = End::form(end);
-        for (key, signal) in given
-            .given()
-            .filter(|(key, _)| ["u1_m", "u3_m", "slope_rad"].contains(key))
-        {
+        for (key, signal) in given.given().filter(|(key, _)| ["u1_m", "u3_m"].contains(key)) {
             if !begins_at_rest(signal) {
                 let pointer = format!("/beams/{k}/ends/{name}/{form}/{key}");
                 let what = "the motion of an end of a structure begins with a jump of its velocity";
