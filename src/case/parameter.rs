@@ -13,17 +13,20 @@ use super::{parse, section};
 use crate::error::{Error, Result};
 
 /// Parts of a case that describe the physical model, not the computation.
-const PARTS: [&str; 14] = [
+const PARTS: [&str; 17] = [
     "beam",
     "fluid",
     "bladders",
     "spans",
+    "beams",
+    "joints",
     "tubes",
     "network",
     "loads",
     "attachments",
     "foundation",
     "contacts",
+    "beam_contacts",
     "surroundings",
     "rotating_frame",
     "ends",
@@ -247,6 +250,10 @@ const WITHIN_SMOOTHING: f64 = 1e-3;
 
 /// Relative change of a parameter in a difference: 1e-3, and less where contact forces would change their law within it.
 pub fn change(case: &Case) -> f64 {
+    let between = case
+        .beam_contacts
+        .iter()
+        .map(|contact| WITHIN_SMOOTHING * contact.smoothing_m / case.beam.length_m);
     let contacts = case.contacts.iter();
     let least = contacts.map(|contact| {
         let largest = contact
@@ -254,5 +261,5 @@ pub fn change(case: &Case) -> f64 {
             .fold(case.beam.length_m, |most, x| most.max(x.abs()));
         WITHIN_SMOOTHING * contact.smoothing_m / largest
     });
-    least.fold(CHANGE, f64::min)
+    least.chain(between).fold(CHANGE, f64::min)
 }

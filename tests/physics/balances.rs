@@ -32,7 +32,8 @@ fn closes(name: &str, end: f64) {
     let case = shipped::<&str>(name, &[]);
     let bladders = case.bladders;
     let unlike = bladders.as_ref().is_some_and(|b| !b.lower.is_mirrored());
-    let conservative = unlike || case.rotating_frame.is_some() || case.loads.iter().any(Load::is_rest);
+    let conservative =
+        unlike || case.is_structure() || case.rotating_frame.is_some() || case.loads.iter().any(Load::is_rest);
     // a strain energy and unlike rows allow only one coupling and one formulation; rest curvature and rotating frames one formulation
     let nonlinear = bladders.as_ref().is_some_and(|b| b.strain_energy.is_some());
     // with the slopes of the paper's beam the pressures of the clamped strip drive it: its motion diverges within 16 ms
@@ -166,6 +167,22 @@ fn balances_of_networks_close() {
         ("modulated-metamaterial", 0.2),
         ("raised-tank", 1.0),
         ("relaxation-oscillator", 0.2),
+    ] {
+        closes(name, end);
+    }
+}
+
+/// Joints at angles, hinges, contact with a disc, between beams and with the ground.
+#[test]
+fn balances_of_structures_close() {
+    for (name, end) in [
+        ("gripper", 0.7),
+        ("pinch", 1.0),
+        ("walker", 0.2),
+        ("four-bar", 0.3),
+        ("l-actuator", 0.2),
+        ("branched-actuator", 0.3),
+        ("lattice", 0.1),
     ] {
         closes(name, end);
     }

@@ -285,6 +285,13 @@ fn no_energy(matrix: &[[f64; 3]; 3]) -> Option<String> {
 
 /// Checks that hinged places meet, and that joints do not divide spans with values along them.
 fn places(case: &Case, faults: &mut Violations) {
+    for (k, origin) in structure::origins(case).iter().enumerate() {
+        if origin.is_none() {
+            let what = format!("nothing says where \"{}\" is", case.beams[k].name);
+            let fault = Violation::new(Code::Missing, format!("/beams/{k}"), what);
+            faults.push_at_key(fault.hint("give origin_m, or join it to another beam"));
+        }
+    }
     let (pieces, joined) = structure::pieces(case);
     for (j, (joint, places)) in case.joints.iter().zip(&joined).enumerate() {
         let at = |place: &structure::Place| {

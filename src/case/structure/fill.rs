@@ -1,10 +1,9 @@
-//! Values of a structure that follow from others: lengths and numbers of segments, positions, the spans of all beams one after the other.
+//! Values of a structure that follow from others: lengths and numbers of segments, the spans of all beams one after the other.
 
 use std::collections::HashMap;
 
 use serde_json::{Map, Value, json};
 
-use super::{Along, joined_place};
 use crate::case::presets::Preset;
 use crate::case::schema::{Span, SpanLengths};
 
@@ -52,7 +51,6 @@ pub fn fill(case: &mut Value) {
         spans.extend(spans_of(beam, length, segments));
         (total, counts) = (total + length, counts + segments);
     }
-    place(&mut beams, case.get("joints"));
     let Some(case) = case.as_object_mut() else { return };
     for key in ["network", "start"] {
         if let Some(part) = case.get_mut(key) {
@@ -121,75 +119,6 @@ fn spans_of(beam: &Map<String, Value>, length: f64, segments: u64) -> Vec<Value>
         }
     }
     spans
-}
-
-/// Gives every beam without origin the position at which a joint puts it, the first beam 0.
-fn place(beams: &mut [Value], joints: Option<&Value>) {
-    let set = |beam: &mut Value, origin: [f64; 2]| beam["origin_m"] = json!(origin);
-    if let Some(beam) = beams.first_mut()
-        && beam.get("origin_m").is_none()
-    {
-        set(beam, [0.0; 2]);
-    }
-    let joints: Vec<Vec<&str>> = joints
-        .and_then(Value::as_array)
-        .into_iter()
-        .flatten()
-        .map(|joint| {
-            let at = joint.get("at").and_then(Value::as_array);
-            at.into_iter().flatten().filter_map(Value::as_str).collect()
-        })
-        .collect();
-    let find = |beams: &[Value], written: &str| {
-        let (name, along) = joined_place(written)?;
-        let beam = beams
-            .iter()
-            .position(|beam| beam.get("name").and_then(Value::as_str) == Some(name))?;
-        Some((beam, offset(beams[beam].as_object()?, along)?))
-    };
-    loop {
-        let mut placed = false;
-        for joint in &joints {
-            let ends: Vec<(usize, [f64; 2])> = joint.iter().filter_map(|written| find(beams, written)).collect();
-            let origin =
-                |beam: usize| -> Option<[f64; 2]> { serde_json::from_value(beams[beam].get("origin_m")?.clone()).ok() };
-            let known = ends.iter().find_map(|(beam, by)| Some((origin(*beam)?, by)));
-            let Some((origin, by)) = known else { continue };
-            let at = [0, 1].map(|k| origin[k] + by[k]);
-            for (beam, by) in ends
-                .iter()
-                .filter(|(beam, _)| beams[*beam].get("origin_m").is_none())
-                .cloned()
-                .collect::<Vec<_>>()
-            {
-                set(&mut beams[beam], [0, 1].map(|k| at[k] - by[k]));
-                placed = true;
-            }
-        }
-        if !placed {
-            return;
-        }
-    }
-}
-
-/// Vector from the root of a beam to one of its places [m].
-fn offset(beam: &Map<String, Value>, along: Along) -> Option<[f64; 2]> {
-    let (length, segments) = size(beam);
-    let angle = beam.get("angle_rad").map_or(Some(0.0), Value::as_f64)?;
-    let distance = match along {
-        Along::Root => 0.0,
-        Along::Tip => length,
-        Along::Behind(behind) => {
-            let spans = spans_of(beam, length, segments);
-            let each = spans.iter().flat_map(|span| {
-                let count = span.get("segments").and_then(Value::as_u64).unwrap_or(1);
-                let length = span.get("length_m").and_then(Value::as_f64).unwrap_or(0.0);
-                (0..count.min(segments)).map(move |_| length / count as f64)
-            });
-            each.take(behind).sum()
-        }
-    };
-    Some([angle.sin() * distance, angle.cos() * distance])
 }
 
 /// Replaces `"NAME:3"` by the number of that bladder among those of all beams.

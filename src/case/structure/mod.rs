@@ -9,7 +9,7 @@ mod fill;
 mod pieces;
 
 pub use fill::fill;
-pub use pieces::{Piece, Place, pieces};
+pub use pieces::{Piece, Place, origins, pieces};
 
 /// Pointer of a value of a span of all beams, as it is written in its beam; none for other pointers.
 pub fn written_span(case: &Case, pointer: &str) -> Option<String> {

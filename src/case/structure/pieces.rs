@@ -178,6 +178,7 @@ pub fn pieces(case: &Case) -> (Vec<Piece>, Vec<Vec<Place>>) {
         }
     };
     let places = || case.joints.iter().flat_map(|joint| &joint.at);
+    let origins = origins(case);
     let mut all = vec![];
     for (k, beam) in case.beams.iter().enumerate() {
         let mut cuts: Vec<usize> = places()
@@ -188,7 +189,14 @@ pub fn pieces(case: &Case) -> (Vec<Piece>, Vec<Vec<Place>>) {
         cuts.extend([0, count(k)]);
         cuts.sort_unstable();
         cuts.dedup();
-        pieces_of(beam, k, &cuts, first[k], &lengths, &mut all);
+        pieces_of(
+            (k, beam),
+            origins[k].unwrap_or_default(),
+            &cuts,
+            first[k],
+            &lengths,
+            &mut all,
+        );
     }
     let end = |written: &String| {
         let (name, along) = joined_place(written)?;
@@ -215,9 +223,60 @@ pub fn pieces(case: &Case) -> (Vec<Piece>, Vec<Vec<Place>>) {
     (all, joints)
 }
 
+/// Position of the root of each beam [m]: as given, of the first beam 0, of others where a joint puts it; none for a beam that nothing places.
+pub fn origins(case: &Case) -> Vec<Option<Planar<f64>>> {
+    let first = first_segments(case);
+    let lengths = spans::segment_lengths(case);
+    let mut origins: Vec<_> = case
+        .beams
+        .iter()
+        .map(|beam| beam.origin_m.map(|[x, z]| Planar { x, z }))
+        .collect();
+    if let Some(origin) = origins.first_mut() {
+        origin.get_or_insert_default();
+    }
+    // beam of a place, and the vector from its root
+    let along = |written: &String| {
+        let (name, along) = joined_place(written)?;
+        let beam = case.beams.iter().position(|beam| beam.name == name)?;
+        let (count, own) = (first[beam + 1] - first[beam], &case.beams[beam]);
+        let distance = match along {
+            Along::Root => 0.0,
+            Along::Behind(behind) if behind < count => lengths.get(first[beam]..first[beam] + behind)?.iter().sum(),
+            Along::Tip | Along::Behind(_) => own.length_m.unwrap_or(case.beam.length_m),
+        };
+        Some((beam, Planar::tangent(own.angle_rad) * distance))
+    };
+    let joints: Vec<Vec<_>> = case
+        .joints
+        .iter()
+        .map(|joint| joint.at.iter().filter_map(along).collect())
+        .collect();
+    let mut placed = true;
+    while std::mem::take(&mut placed) {
+        for joint in &joints {
+            let known = joint.iter().find_map(|(beam, by)| Some(origins[*beam]? + *by));
+            let Some(at) = known else { continue };
+            for (beam, by) in joint {
+                if origins[*beam].is_none() {
+                    origins[*beam] = Some(at - *by);
+                    placed = true;
+                }
+            }
+        }
+    }
+    origins
+}
+
 /// Adds the pieces of a beam between cuts.
-fn pieces_of(beam: &PlacedBeam, number: usize, cuts: &[usize], first: usize, lengths: &[f64], all: &mut Vec<Piece>) {
-    let [x, z] = beam.origin_m.unwrap_or_default();
+fn pieces_of(
+    (number, beam): (usize, &PlacedBeam),
+    origin: Planar<f64>,
+    cuts: &[usize],
+    first: usize,
+    lengths: &[f64],
+    all: &mut Vec<Piece>,
+) {
     let direction = Planar::tangent(beam.angle_rad);
     let mut from = 0.0;
     for (k, cut) in cuts.windows(2).enumerate() {
@@ -233,7 +292,7 @@ fn pieces_of(beam: &PlacedBeam, number: usize, cuts: &[usize], first: usize, len
             from,
             length,
             at_end: [k == 0, k + 2 == cuts.len()],
-            origin: Planar { x, z } + direction * from,
+            origin: origin + direction * from,
             angle: beam.angle_rad,
         });
         from += length;
