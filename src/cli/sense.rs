@@ -21,8 +21,8 @@ use crate::study::sweep::plan::quoted;
 pub fn sense(asked: &SenseArguments) -> Result<ExitCode> {
     let case = &resources::load(&asked.case)?;
     let question = question(asked, case.time.end_s)?;
-    probed(case)?;
     amplitudes(case, &question.loads)?;
+    probed(case)?;
     let measured = asked.pressures.as_ref().map(|path| PressureTable::read(path, case));
     let measured = measured.transpose()?;
     if question.noise_pa.is_some() && measured.as_ref().is_some_and(|one| one.deviations.is_some()) {

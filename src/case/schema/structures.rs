@@ -4,6 +4,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::{Attachment, Case, End, Load, Probe, Span, SpanBeam, SpanBladders, SpanRows, is_zero};
+use crate::error::{Error, Result};
 
 /// A beam of a structure. Values of section and bladders that it does not give are those of `beam` and `bladders`, as in a span. Lengths,
 /// loads, ends, attachments and probes refer to its own axes: z along the straight beam from its root, x across.
@@ -251,5 +252,19 @@ impl Case {
     /// True if the case has several beams, or one that is placed.
     pub fn is_structure(&self) -> bool {
         !self.beams.is_empty()
+    }
+
+    /// Rejects a structure.
+    ///
+    /// # Errors
+    /// [`Error::Usage`] for a case with several beams; `what` needs a single one.
+    pub fn single(&self, what: &str) -> Result<()> {
+        match self.is_structure() {
+            false => Ok(()),
+            true => Err(Error::Usage(format!(
+                "{what}: {} has several beams, but a single one is needed. Use a case of the beam in question, without /beams",
+                self.name
+            ))),
+        }
     }
 }

@@ -50,6 +50,10 @@ impl RepeatingCell {
     /// # Errors
     /// [`Error::Usage`] if no cell repeats, with the reason for a cell of one segment.
     pub fn new(about: &Linearised) -> Result<Self> {
+        if about.system().model.structure.is_some() {
+            let what = "bands: the case has several beams, but waves are those of one. Use a case without /beams";
+            return Err(Error::Usage(what.into()));
+        }
         let segments = about.system().mesh.segments;
         let (mut reason, mut in_the_middle) = (None, None::<Self>);
         for period in 1..=segments / CELLS {

@@ -296,6 +296,14 @@ impl PeriodicScene {
     /// # Errors
     /// [`Error::Usage`] for a beam that is not held along or across.
     pub fn held(&self, name: &str) -> Result<()> {
+        if self.system.model.structure.is_some() {
+            return match self.system.model.unheld()[..] {
+                [] => Ok(()),
+                _ => Err(Error::Usage(format!(
+                    "{name}: nothing holds the structure, so every displaced cycle is also a cycle. Hold an end of a beam"
+                ))),
+            };
+        }
         let [root, tip] = self.system.model.root_and_tip();
         let driven = |m: &Translation| matches!(m, Translation::Displacement(_));
         for (what, held) in [

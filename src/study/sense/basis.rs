@@ -225,6 +225,7 @@ pub struct Amplitude {
 /// # Errors
 /// [`Error::Usage`] for a load that is given twice, a second profile, or a load on a fixed degree of freedom of the tip.
 pub fn amplitudes(case: &Case, loads: &[Basis]) -> Result<Vec<Amplitude>> {
+    case.single("sense")?;
     let tip = case.ends.tip.resolve();
     for (k, load) in loads.iter().enumerate() {
         let wrong = |what: &str| Err(Error::Usage(format!("--load {load}: {what}")));

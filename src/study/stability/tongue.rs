@@ -96,6 +96,7 @@ pub struct Map {
 /// # Errors
 /// [`Error::Usage`] if there is none.
 pub fn shaking(case: &Case) -> Result<(f64, f64)> {
+    case.single("map")?;
     match settled(axial(whole(case)?.root_and_tip())) {
         Signal::Sine(sine) => Ok((sine.frequency_hz, sine.amplitude.abs())),
         _ => Err(Error::Usage(format!(
