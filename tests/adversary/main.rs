@@ -15,6 +15,7 @@ mod chance;
 mod coverage;
 mod digits;
 mod further;
+mod graphs;
 mod judge;
 mod network;
 mod parts;
@@ -109,6 +110,16 @@ fn no_scene_with_parts_is_silently_wrong() {
     none_silent(&lines);
 }
 
+/// Goal: of 300 graphs of beams none is silently wrong.
+#[test]
+#[ignore = "takes minutes"]
+fn no_graph_of_beams_is_silently_wrong() {
+    let (count, first) = (number("SLCBEAM_ADVERSARY"), number("SLCBEAM_ADVERSARY_FIRST"));
+    let lines = tally::run(Kind::Graph, first.unwrap_or(1), count.unwrap_or(300), true);
+    println!("{}", tally::table(&lines));
+    none_silent(&lines);
+}
+
 /// Goal: of 200 sane scenes at most 5 % carry a warning that the reference shows to be needless, and none is silently wrong.
 #[test]
 #[ignore = "takes a quarter of an hour"]
@@ -146,12 +157,13 @@ fn accuracies_are_kept() {
     assert!(tally.broken.len() * 100 <= tally.reached, "{tally:?}");
 }
 
-/// Of which scenes a seed is: of those that `SLCBEAM_ADVERSARY_KIND` names, `sane`, `further` or `parts`.
+/// Of which scenes a seed is: of those that `SLCBEAM_ADVERSARY_KIND` names, `sane`, `further`, `parts` or `graph`.
 fn kind() -> Kind {
     match std::env::var("SLCBEAM_ADVERSARY_KIND").as_deref() {
         Ok("sane") => Kind::Sane,
         Ok("further") => Kind::Further,
         Ok("parts") => Kind::Parts,
+        Ok("graph") => Kind::Graph,
         _ => Kind::Extreme,
     }
 }

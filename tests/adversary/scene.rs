@@ -7,6 +7,7 @@ use serde_json::{Value, json};
 use crate::chance::Random;
 use crate::digits::short;
 use crate::further;
+use crate::graphs;
 use crate::network;
 use crate::parts;
 use crate::profiles;
@@ -41,13 +42,15 @@ pub enum Kind {
     Further,
     /// The same with walls and parts of networks.
     Parts,
+    /// Graphs of beams, otherwise sane.
+    Graph,
     /// Sizes and loads like those of the shipped cases.
     Sane,
 }
 
 /// The scene of a seed.
 pub fn draw(seed: u64, kind: Kind) -> Value {
-    let sane = kind == Kind::Sane;
+    let sane = matches!(kind, Kind::Sane | Kind::Graph);
     let r = &mut Random(seed.wrapping_mul(0x5851_F42D_4C95_7F2D) ^ if sane { 0x5A5A } else { 0 });
     let name = if sane { "sane" } else { "adversary" };
     let (b, mut case) = beam(r, sane);
@@ -77,6 +80,9 @@ pub fn draw(seed: u64, kind: Kind) -> Value {
     }
     if kind == Kind::Parts {
         parts::add(r, &b, &mut case, wet);
+    }
+    if kind == Kind::Graph {
+        graphs::add(r, &b, &mut case, wet);
     }
     case
 }

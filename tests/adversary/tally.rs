@@ -105,6 +105,7 @@ pub fn name(kind: Kind, seed: u64) -> String {
         Kind::Sane => "sane",
         Kind::Further => "further",
         Kind::Parts => "parts",
+        Kind::Graph => "graph",
         Kind::Extreme => "scene",
     };
     format!("{of}-{seed}")
