@@ -23,12 +23,15 @@ fn lee(segments: usize, force: f64) -> Value {
 #[test]
 fn lees_frame_follows_its_path() {
     let meshes = [20, 40];
-    for (force, across, along) in [(13457.911339, 20.0, 5.25517927), (17807.824644, 40.0, 17.557619869)] {
+    for (force, across, along, corner) in [
+        (13457.911339, 20.0, 5.25517927, 0.57684785974),
+        (17807.824644, 40.0, 17.557619869, 0.90600387105),
+    ] {
         let found = meshes.map(|n| at_rest(&lee(n, force)));
         let of = |name: &str| extrapolated(found.each_ref().map(|last| last(name)));
         near("down", -of("top.load_u1"), across, 1e-4);
         near("along", of("top.load_u3"), along, 1e-4);
-        near("corner", found[1]("leg.tip_angle"), found[1]("top.tip_angle"), 10.0);
+        near("corner", -of("leg.tip_angle"), corner, 1e-4);
     }
     let limits = meshes.map(|n| {
         let (path, _) = path_of(&lee(n, 20000.0));
@@ -37,4 +40,109 @@ fn lees_frame_follows_its_path() {
         20000.0 * first.share
     });
     near("limit load", extrapolated(limits), 18556.727538, 1e-4);
+}
+
+/// Deep arch of 215 degrees and radius 1 as a polygon, clamped at its left end and hinged at the right one, with a force at its crown.
+fn arch(sides: usize, force: f64) -> Value {
+    let each = 215.0 / sides as f64;
+    let chord = 2.0 * (0.5 * each.to_radians()).sin();
+    let names: Vec<String> = (0..sides).map(|k| format!("s{k}")).collect();
+    let mut beams: Vec<Value> = (0..sides)
+        .map(|k| beam(&names[k], chord, 107.5 - (k as f64 + 0.5) * each, 2))
+        .collect();
+    beams[0]["ends"]["root"] = json!("clamped");
+    beams[sides - 1]["ends"]["tip"] = json!("pinned");
+    // at the root that follows the tip before it, in its own axes
+    let angle = (-0.5 * each).to_radians();
+    beams[sides / 2]["attachments"] =
+        json!([{"at": 0.0, "force_x_n": -force * angle.cos(), "force_z_n": -force * angle.sin()}]);
+    let joints = (1..sides).map(|k| joint("rigid", &[&format!("s{}.tip", k - 1), &format!("s{k}.root")]));
+    let mut case = structure(section([1e4, 1.0, 1.0]), beams, joints.collect());
+    case["beams"][0]["origin_m"] = json!([107.5_f64.to_radians().cos(), -107.5_f64.to_radians().sin()]);
+    case
+}
+
+/// Source: shooting, 10 digits; 8.97 of DaDeppo and Schmidt (1975) without stretch. Goal: first limit load, and the crown at 6 EI/R².
+#[test]
+fn deep_arch_snaps_at_its_limit_load() {
+    let meshes = [24, 48];
+    let found = meshes.map(|n| at_rest(&arch(n, 6.0)));
+    let crown = meshes.map(|n| format!("s{}", n / 2 - 1));
+    let of = |column: &str| extrapolated([0, 1].map(|k| found[k](&format!("{}.{column}", crown[k]))));
+    near("along", of("tip_z"), 0.43298256143, 1e-3);
+    near("down", 1.0 - of("tip_x"), 0.58585613629, 1e-3);
+    near("rotation", of("tip_angle"), 0.096373745719, 3e-3);
+    let limits = meshes.map(|n| {
+        let (path, _) = path_of(&arch(n, 10.0));
+        let first = path.events.first().expect("a limit point");
+        assert_eq!(first.kind, EventKind::LimitPoint);
+        10.0 * first.share
+    });
+    near("limit load", extrapolated(limits), 8.9591053039, 1e-3);
+}
+
+/// Source: the stiffness matrix of three members of lengths 1, 0.8, 1.3 and EI 1, 2, 0.5 with EA = 1000, at 90, 210, 330 degrees. Goal: a
+/// small force at their joint moves and turns it.
+#[test]
+fn a_y_yields_as_by_its_stiffness_matrix() {
+    let of = |segments: usize| {
+        let members = [("a", 90.0, 1.0, 1.0), ("b", 210.0, 0.8, 2.0), ("c", 330.0, 1.3, 0.5)];
+        let beams = members.map(|(name, degrees, length, ei)| {
+            let mut member = held(beam(name, length, degrees + 180.0, segments), "root", json!("clamped"));
+            member["beam"] = section([1000.0, ei, 1.0]);
+            member["origin_m"] = json!([
+                length * f64::to_radians(degrees).sin(),
+                length * f64::to_radians(degrees).cos()
+            ]);
+            member
+        });
+        let [mut a, b, c] = beams;
+        a["attachments"] = json!([{"at": 1.0, "force_x_n": 6e-4, "force_z_n": -8e-4}]);
+        structure(
+            section([1000.0, 1.0, 1.0]),
+            vec![a, b, c],
+            vec![joint("rigid", &["a.tip", "b.tip", "c.tip"])],
+        )
+    };
+    let found = [16, 32].map(|n| at_rest(&of(n)));
+    let of = |name: &str| extrapolated(found.each_ref().map(|last| last(name)));
+    near("to the right", of("a.tip_u1"), 3.296926502900054e-07, 1e-5);
+    near("upwards", -of("a.tip_u3"), 4.818633099170407e-07, 1e-5);
+    near("rotation", of("b.tip_angle"), 3.654394000579e-07, 1e-5);
+}
+
+/// Goal: a parallelogram of hinged beams, driven at a crank, moves as a rigid mechanism: no energy, exact places.
+#[test]
+fn a_parallelogram_moves_without_energy() {
+    let turn = 1.1;
+    let crank = held(
+        beam("crank", 0.4, 70.0, 4),
+        "root",
+        json!({"clamped": {"slope_rad": -turn}}),
+    );
+    let rocker = held(beam("rocker", 0.4, 250.0, 4), "tip", json!("pinned"));
+    let joints = vec![
+        joint("hinge", &["crank.tip", "coupler.root"]),
+        joint("hinge", &["coupler.tip", "rocker.root"]),
+    ];
+    let case = structure(
+        section([1e4, 1.0, 1.0]),
+        vec![crank, beam("coupler", 0.7, 0.0, 6), rocker],
+        joints,
+    );
+    let last = at_rest(&case);
+    let angle = 70.0_f64.to_radians() - turn;
+    for (name, exact) in [
+        ("crank.tip_z", 0.4 * angle.cos()),
+        ("crank.tip_x", 0.4 * angle.sin()),
+        ("coupler.tip_z", 0.7 + 0.4 * angle.cos()),
+        ("coupler.tip_x", 0.4 * angle.sin()),
+        ("rocker.tip_z", 0.7),
+        ("rocker.tip_x", 0.0),
+        ("coupler.tip_angle", 0.0),
+        ("rocker.tip_angle", -turn),
+    ] {
+        assert!((last(name) - exact).abs() < 1e-10, "{name}: {} for {exact}", last(name));
+    }
+    assert!(last("bending_energy").abs() + last("axial_energy").abs() < 1e-16);
 }

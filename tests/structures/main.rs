@@ -4,8 +4,19 @@
 //! Sources: single beams, shooting in exact elastica equations, dynamic stiffness, spectral elements with Radau's method, circuit theory.
 //! Reference axes are x to the right and y upwards; in the case they are z and x, so that angles grow counter-clockwise in both.
 
+#[path = "../common/balances.rs"]
+mod balances;
+#[path = "../common/chance.rs"]
+mod chance;
+mod derivatives;
+#[path = "../differences/mod.rs"]
+mod differences;
 mod frames;
+mod growth;
+mod identity;
+mod mechanisms;
 mod modes;
+mod networks;
 mod plans;
 #[path = "../common/scene.rs"]
 mod scene;
