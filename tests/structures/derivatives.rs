@@ -117,7 +117,7 @@ fn jacobian_agrees_with_coloured_differences() {
         let mut dae = BeamDae::new(System::new(&parse(&case)).unwrap());
         for (seed, size) in [(1, 1.0), (2, 0.3), (3, 0.03)] {
             let worst = worst_difference(&mut dae, seed, size);
-            println!("{what}, {size}: {worst:.1e}");
+            println!("{what}, {} unknowns, {size}: {worst:.1e}", dae.len());
             assert!(worst < 1e-6, "{what}, size {size}: {worst:.1e}");
         }
     }

@@ -74,9 +74,18 @@ fn a_junction_feeds_two_beams_as_by_circuit_theory() {
     let last = at_rest(&case);
     let (a, b) = (3.0 * BLADDER + 4.0 * TUBE, 2.0 * BLADDER + 3.0 * TUBE);
     let y = (9000.0 / TUBE + 2000.0 / a - 1000.0 / b) / (1.0 / TUBE + 1.0 / a + 1.0 / b);
-    near("feed", last("port_in_flow"), (9000.0 - y) / TUBE, 1e-9);
-    near("outlet of a", -last("port_of_a_flow"), (y - 2000.0) / a, 1e-9);
-    near("outlet of b", -last("port_of_b_flow"), (y + 1000.0) / b, 1e-9);
+    let behind_a = |resistance: f64| y - (y - 2000.0) * resistance / a;
+    let behind_b = |resistance: f64| y - (y + 1000.0) * resistance / b;
+    // mean pressures: half a bladder behind its inlet
+    for (bladder, exact) in [
+        (1, behind_a(TUBE + 0.5 * BLADDER)),
+        (2, behind_a(2.0 * TUBE + 1.5 * BLADDER)),
+        (3, behind_a(3.0 * TUBE + 2.5 * BLADDER)),
+        (4, behind_b(TUBE + 0.5 * BLADDER)),
+        (5, behind_b(2.0 * TUBE + 1.5 * BLADDER)),
+    ] {
+        near("bladder", last(&format!("bladder_{bladder}_pressure")), exact, 1e-9);
+    }
 }
 
 /// Goal: a ring through the bladders of both beams and a tube, fed and drained at two of its junctions: the flow divides as by the resistances
@@ -101,7 +110,20 @@ fn a_ring_over_two_beams_divides_its_flow() {
         500.0 + 1e-7 * a * b / (a + b),
         1e-9,
     );
-    near("drain", -last("port_out_flow"), 1e-7, 1e-9);
+    // bladders of b from its tip to its root
+    let way = |share: f64| 500.0 + 1e-7 * a * b / (a + b) * (1.0 - share);
+    near(
+        "bladder of a",
+        last("bladder_2_pressure"),
+        way((2.0 * TUBE + 1.5 * BLADDER) / a),
+        1e-9,
+    );
+    near(
+        "bladder of b",
+        last("bladder_5_pressure"),
+        way((TUBE + 0.5 * BLADDER) / b),
+        1e-9,
+    );
 }
 
 /// Goal: bladders of both beams in a ring of five equal ones with equal tubes: a pressure in the form of the first mode of the ring decays

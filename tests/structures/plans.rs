@@ -50,7 +50,10 @@ pub fn path_of(case: &Value) -> (equilibrium::Path, Vec<String>) {
 pub fn at_rest(case: &Value) -> impl Fn(&str) -> f64 + use<> {
     let (path, names) = path_of(case);
     let row = path.last().row.clone();
-    move |name: &str| row[names.iter().position(|known| known == name).expect(name)]
+    move |name: &str| {
+        let at = names.iter().position(|known| known == name);
+        row[at.unwrap_or_else(|| panic!("no {name} among {names:?}"))]
+    }
 }
 
 /// Value in the limit of fine meshes, from two meshes of which the second has twice the cells (second order).
