@@ -18,8 +18,15 @@ fn lee(segments: usize, force: f64) -> Value {
     )
 }
 
-/// Source: shooting in the exact elastica equations with pseudo-arc length, all digits converged. Goal: first limit load, and states before
-/// it at displacements of 20 and 40.
+/// Loads of the limit points of a path.
+fn limit_loads(case: &Value, largest: f64) -> Vec<f64> {
+    let (path, _) = path_of(case);
+    let limits = path.events.iter().filter(|event| event.kind == EventKind::LimitPoint);
+    limits.map(|event| largest * event.share).collect()
+}
+
+/// Source: shooting in the exact elastica equations with pseudo-arc length, all digits converged. Goal: both limit loads,
+/// the first also of beams that shear, and states before it at displacements of 20 and 40.
 #[test]
 fn lees_frame_follows_its_path() {
     let meshes = [20, 40];
@@ -33,13 +40,21 @@ fn lees_frame_follows_its_path() {
         near("along", of("top.load_u3"), along, 1e-4);
         near("corner", -of("leg.tip_angle"), corner, 1e-4);
     }
-    let limits = meshes.map(|n| {
-        let (path, _) = path_of(&lee(n, 20000.0));
-        let first = path.events.first().expect("a limit point");
-        assert_eq!(first.kind, EventKind::LimitPoint);
-        20000.0 * first.share
+    let limits = meshes.map(|n| limit_loads(&lee(n, 20000.0), 20000.0));
+    for (k, exact) in [18556.727538, -9414.4315556].into_iter().enumerate() {
+        near(
+            "limit load",
+            extrapolated(limits.each_ref().map(|loads| loads[k])),
+            exact,
+            1e-4,
+        );
+    }
+    let sheared = meshes.map(|n| {
+        let mut case = lee(n, 20000.0);
+        case["beam"]["shear_stiffness_n"] = json!(4.32e7 * 5.0 / 6.0 / 2.6);
+        limit_loads(&case, 20000.0)[0]
     });
-    near("limit load", extrapolated(limits), 18556.727538, 1e-4);
+    near("limit load with shear", extrapolated(sheared), 18544.527094, 1e-4);
 }
 
 /// Deep arch of 215 degrees and radius 1 as a polygon, clamped at its left end and hinged at the right one, with a force at its crown.
@@ -69,16 +84,11 @@ fn deep_arch_snaps_at_its_limit_load() {
     let found = meshes.map(|n| at_rest(&arch(n, 6.0)));
     let crown = meshes.map(|n| format!("s{}", n / 2 - 1));
     let of = |column: &str| extrapolated([0, 1].map(|k| found[k](&format!("{}.{column}", crown[k]))));
-    near("along", of("tip_z"), 0.43298256143, 1e-3);
-    near("down", 1.0 - of("tip_x"), 0.58585613629, 1e-3);
-    near("rotation", of("tip_angle"), 0.096373745719, 3e-3);
-    let limits = meshes.map(|n| {
-        let (path, _) = path_of(&arch(n, 10.0));
-        let first = path.events.first().expect("a limit point");
-        assert_eq!(first.kind, EventKind::LimitPoint);
-        10.0 * first.share
-    });
-    near("limit load", extrapolated(limits), 8.9591053039, 1e-3);
+    near("along", of("tip_z"), 0.43298256143, 1e-4);
+    near("down", 1.0 - of("tip_x"), 0.58585613629, 1e-4);
+    near("rotation", of("tip_angle"), 0.096373745719, 1e-4);
+    let limits = meshes.map(|n| limit_loads(&arch(n, 10.0), 10.0)[0]);
+    near("limit load", extrapolated(limits), 8.9591053039, 1e-4);
 }
 
 /// Source: the stiffness matrix of three members of lengths 1, 0.8, 1.3 and EI 1, 2, 0.5 with EA = 1000, at 90, 210, 330 degrees. Goal: a

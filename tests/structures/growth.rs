@@ -1,6 +1,6 @@
 //! Work with the number of beams.
 //!
-//! Goal: unknowns, entries of the Jacobian and entries of its factors grow in proportion to the number of beams.
+//! Goal: unknowns, entries of the Jacobian and bytes of its factors grow in proportion to the number of beams.
 
 use serde_json::{Value, json};
 use slcbeam::dae::{BeamDae, Dae, Seeds};
@@ -32,7 +32,7 @@ fn chain(beams: usize) -> Value {
     })
 }
 
-/// Unknowns, entries of the Jacobian and of its factors.
+/// Unknowns, entries of the Jacobian, and bytes of its factors.
 fn sizes(beams: usize) -> [f64; 3] {
     let case = parse(&chain(beams));
     let mut dae = BeamDae::new(System::new(&case).unwrap());
@@ -44,13 +44,14 @@ fn sizes(beams: usize) -> [f64; 3] {
         .unwrap();
     let mut lu = Lu::new(&pattern).unwrap();
     lu.factor(&values).unwrap();
-    [y.len(), pattern.entries(), lu.entries()].map(|size| size as f64)
+    println!("{beams} beams, factors in blocks: {}", lu.in_blocks());
+    [y.len(), pattern.entries(), lu.bytes()].map(|size| size as f64)
 }
 
 #[test]
 fn sizes_grow_with_the_number_of_beams() {
     let found = [8, 16, 32, 64].map(sizes);
-    println!("unknowns, entries, entries of factors: {found:?}");
+    println!("unknowns, entries, bytes of factors: {found:?}");
     for pair in found.windows(2) {
         for k in 0..3 {
             let exponent = (pair[1][k] / pair[0][k]).log2();

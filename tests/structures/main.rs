@@ -18,5 +18,6 @@ mod mechanisms;
 mod modes;
 mod networks;
 mod plans;
+mod rearranged;
 #[path = "../common/scene.rs"]
 mod scene;
