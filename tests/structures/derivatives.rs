@@ -72,6 +72,24 @@ fn frame(preset: bool, more: &[(&str, Value)]) -> Value {
     case
 }
 
+/// The wet frame with another kind of joint in place of its hinge.
+fn jointed(kind: &Value) -> Value {
+    let mut case = frame(true, &[]);
+    case["joints"][1]["kind"] = kind.clone();
+    case
+}
+
+/// The wet frame with another beam that overlaps its first one.
+fn beside() -> Value {
+    let touching = json!([{"name": "all", "stiffness_pa": 2e4, "smoothing_m": 1e-2, "damping_s_m": 0.5,
+        "friction_coefficient": 0.3, "friction_velocity_m_s": 0.1}]);
+    let mut case = frame(true, &[("/beam_contacts", touching)]);
+    let mut other = held(beam("e", 0.05, 15.0, 4), "root", json!("clamped"));
+    other["origin_m"] = json!([-0.018, 0.0]);
+    case["beams"].as_array_mut().unwrap().push(other);
+    case
+}
+
 /// Wet and dry frames with every further effect of a beam.
 fn frames() -> Vec<(&'static str, Value)> {
     let relaxing = json!({"prony": [{"modulus_ratio": 0.5, "time_s": 0.02}]});
@@ -95,6 +113,18 @@ fn frames() -> Vec<(&'static str, Value)> {
                 ],
             ),
         ),
+        (
+            "with an elastic joint",
+            jointed(&json!({"elastic": {
+            "stiffness": [[300.0, 40.0, 2.0], [40.0, 500.0, -3.0], [2.0, -3.0, 0.4]],
+            "damping": [[1.0, 0.2, 0.01], [0.2, 2.0, 0.02], [0.01, 0.02, 0.005]]}})),
+        ),
+        (
+            "with a slider",
+            jointed(&json!({"slider": {"angle_rad": 0.4, "wall_stiffness_n_m": 5e3,
+            "turning_stiffness_n_m_rad": 0.3, "stiffness_n_m": 40.0, "damping_n_s_m": 0.5}})),
+        ),
+        ("touching each other", beside()),
         ("without rotary inertia", frame(true, &[off("rotary_inertia")])),
         ("without inertia", frame(true, &[off("solid_inertia")])),
         (
@@ -120,6 +150,29 @@ fn jacobian_agrees_with_coloured_differences() {
             println!("{what}, {} unknowns, {size}: {worst:.1e}", dae.len());
             assert!(worst < 1e-6, "{what}, size {size}: {worst:.1e}");
         }
+    }
+}
+
+/// Goal: the states above touch: beams and circle press at the start.
+#[test]
+fn beams_and_circle_press() {
+    for (what, contact) in [
+        ("touching each other", "beam_contacts"),
+        ("touching a circle", "contacts"),
+    ] {
+        let pressed = [1.0, 2.0].map(|factor| {
+            let (_, mut case) = frames().into_iter().find(|(name, _)| *name == what).unwrap();
+            case[contact][0]["stiffness_pa"] = json!(2e4 * factor);
+            let case = parse(&case);
+            let mut dae = BeamDae::new(System::new(&case).unwrap());
+            let (system, now) = dae.instant(0.0);
+            let y = start::state(system, &case, now);
+            let mut residual = vec![0.0; y.len()];
+            dae.residual(0.0, &y, &vec![0.0; y.len()], &mut residual).unwrap();
+            residual
+        });
+        let change = pressed[0].iter().zip(&pressed[1]).map(|(a, b)| (a - b).abs());
+        assert!(change.fold(0.0, f64::max) > 1e-3, "{what}");
     }
 }
 
