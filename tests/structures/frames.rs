@@ -57,6 +57,64 @@ fn lees_frame_follows_its_path() {
     near("limit load with shear", extrapolated(sheared), 18544.527094, 1e-4);
 }
 
+/// Goal: the path is stable up to its first limit load, has one unstable direction between both and is stable behind the second.
+#[test]
+fn lees_frame_is_unstable_between_its_limit_loads() {
+    let (path, _) = path_of(&lee(20, 20000.0));
+    let states = &path.states;
+    // the load turns back at the second limit, where it is least, and at the first one, where it is largest before
+    let least = (0..states.len())
+        .min_by(|a, b| states[*a].share.total_cmp(&states[*b].share))
+        .unwrap();
+    let most = (0..least)
+        .max_by(|a, b| states[*a].share.total_cmp(&states[*b].share))
+        .unwrap();
+    assert!(most > 5 && least > most + 5 && states.len() > least + 5);
+    for (k, state) in states
+        .iter()
+        .enumerate()
+        .filter(|(k, _)| k.abs_diff(most) > 1 && k.abs_diff(least) > 1)
+    {
+        let unstable = state.stability.expect("eigenvalues").unstable;
+        assert_eq!(unstable, usize::from(k > most && k < least), "{k}: {}", state.share);
+    }
+}
+
+/// Source: sway of a portal with clamped columns and a girder of the same length and stiffness: `k/tan k = -6`, `P = k² EI/L²`, k = 2.71646;
+/// the stretch of the columns changes it by `P/EA`. Goal: columns under two forces buckle at this load, and sway.
+#[test]
+fn a_portal_buckles_by_sway() {
+    let of = |segments: usize| {
+        let clamped = |name, degrees, end| held(beam(name, 1.0, degrees, segments), end, json!("clamped"));
+        let mut left = clamped("left", 90.0, "root");
+        left["attachments"] = json!([{"at": 1.0, "force_z_n": -9.0}]);
+        let mut right = clamped("right", -90.0, "tip");
+        right["attachments"] = json!([{"at": 0.0, "force_z_n": 9.0}]);
+        let joints = vec![
+            joint("rigid", &["left.tip", "girder.root"]),
+            joint("rigid", &["girder.tip", "right.root"]),
+        ];
+        structure(
+            section([1e6, 1.0, 1.0]),
+            vec![left, beam("girder", 1.0, 0.0, segments), right],
+            joints,
+        )
+    };
+    let k = (0..60).fold([2.0_f64, 3.0], |[low, high], _| {
+        let k = 0.5 * (low + high);
+        if k / k.tan() > -6.0 { [k, high] } else { [low, k] }
+    });
+    let loads = [16, 32].map(|n| {
+        let (path, names) = path_of(&of(n));
+        let first = path.events.first().expect("buckling");
+        assert_eq!(first.kind, EventKind::Bifurcation);
+        let sway = names.iter().position(|name| name == "left.tip_u1").unwrap();
+        assert!(path.last().row[sway].abs() > 0.1, "it sways");
+        9.0 * first.share
+    });
+    near("buckling load", extrapolated(loads), k[0] * k[0], 1e-4);
+}
+
 /// Deep arch of 215 degrees and radius 1 as a polygon, clamped at its left end and hinged at the right one, with a force at its crown.
 fn arch(sides: usize, force: f64) -> Value {
     let each = 215.0 / sides as f64;
