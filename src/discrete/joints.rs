@@ -80,6 +80,17 @@ pub struct MeshHinge {
     pub law: Hinge,
 }
 
+impl MeshHinge {
+    /// Its law, with the present share of the rest angle.
+    #[inline]
+    fn law_now(&self, now: &TimeData) -> Hinge {
+        Hinge {
+            rest_rad: now.hinge_rest * self.law.rest_rad,
+            ..self.law
+        }
+    }
+}
+
 /// Rotation of the joints of a structure.
 #[derive(Clone, Debug)]
 pub struct JointMotion<T> {
@@ -244,7 +255,14 @@ impl MeshJoints {
     }
 
     /// Completes the equations of joints, from those of momentum of all nodes.
-    pub fn rows<T: Scalar>(&self, system: &System, y: &[T], yp: &[T], w: &Workspace<T>, r: &mut [T]) {
+    pub fn rows<T: Scalar>(
+        &self,
+        (system, now): (&System, &TimeData),
+        y: &[T],
+        yp: &[T],
+        w: &Workspace<T>,
+        r: &mut [T],
+    ) {
         let own = &system.layout.joints;
         for (number, angle) in self.angles.iter().enumerate() {
             let mut against = T::zero();
@@ -264,7 +282,7 @@ impl MeshJoints {
             let [first, other] = hinge.angles;
             let shape = &w.shape;
             let by = hinge_moments(
-                &hinge.law,
+                &hinge.law_now(now),
                 shape.joints.angle[other] - shape.joints.angle[first],
                 shape.joints.rate[other] - shape.joints.rate[first],
             );
@@ -320,11 +338,11 @@ impl MeshJoints {
     }
 
     /// Energy of hinges, and of the rotation of bodies [J].
-    pub fn energies(&self, w: &Workspace<f64>) -> [f64; 2] {
+    pub fn energies(&self, now: &TimeData, w: &Workspace<f64>) -> [f64; 2] {
         let shape = &w.shape;
         let hinges = self.hinges.iter().map(|hinge| {
             let [first, other] = hinge.angles.map(|angle| shape.joints.angle[angle]);
-            hinge_energy(&hinge.law, other - first)
+            hinge_energy(&hinge.law_now(now), other - first)
         });
         let bodies = self.angles.iter().zip(&shape.joints.rate);
         [

@@ -142,6 +142,8 @@ pub struct TimeData {
     pub source_flow: Vec<f64>,
     /// Volume injected by each source with prescribed volume [m^3]; 0 for other sources.
     pub source_volume: Vec<f64>,
+    /// Share of the rest angles of hinges, [`crate::model::Structure::rest`].
+    pub hinge_rest: f64,
     /// Part of gravity that acts on the fluid, [`crate::model::ResolvedNetwork::gravity`].
     pub gravity: f64,
     /// Pressure of each pump without flow [Pa], or the factor of its curve.
@@ -184,6 +186,7 @@ impl TimeData {
             port_pressure_rate: vec![0.0; ports],
             source_flow: vec![0.0; sources],
             source_volume: vec![0.0; sources],
+            hinge_rest: 1.0,
             gravity: 0.0,
             pump_pressure: vec![0.0; system.fluid.as_ref().map_or(0, |fluid| fluid.pumps.len())],
         }
@@ -269,6 +272,7 @@ impl TimeData {
                 .as_ref()
                 .map(|f| (f.normal.jet(clock).value, f.shear.jet(clock).value));
         }
+        self.hinge_rest = system.model.structure.as_ref().map_or(1.0, |one| jet(&one.rest).value);
         self.loads(system, clock);
         self.point_forces(system, clock);
         let around = system.model.surroundings.as_ref();

@@ -29,6 +29,9 @@ impl Model {
             }
         }
         self.loads.iter_mut().for_each(|load| replace(&mut load.signal));
+        self.structure
+            .iter_mut()
+            .for_each(|structure| replace(&mut structure.rest));
         let forces = self
             .attachments
             .iter_mut()

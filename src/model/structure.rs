@@ -15,6 +15,8 @@ pub struct Structure {
     pub beams: Vec<BeamOfStructure>,
     /// Joints.
     pub joints: Vec<JointOfEnds>,
+    /// Share of the rest angles of hinges: 1, and from 0 on along the path of equilibria, as for loads.
+    pub rest: Signal,
 }
 
 /// A beam of a structure, or a part of one between two joints.
@@ -122,17 +124,29 @@ impl Structure {
             }
         });
         let joints = joints.collect();
-        Some(Self { beams, joints })
+        Some(Self {
+            beams,
+            joints,
+            rest: Signal::Constant(1.0),
+        })
     }
 
-    /// Largest scales of its beams.
+    /// Largest scales of its beams, and of the motion to the rest angles of hinges.
     pub fn scales(&self, wet: Option<&Wet>) -> Scales {
         let each = self
             .beams
             .iter()
             .map(|beam| Scales::estimate(&beam.case, &beam.model.section, wet));
-        each.reduce(|all, one| all.larger(&one))
-            .unwrap_or_else(|| unreachable!("a structure has a beam"))
+        let mut all = each
+            .reduce(|all, one| all.larger(&one))
+            .unwrap_or_else(|| unreachable!("a structure has a beam"));
+        let sprung = self.joints.iter().filter_map(|joint| joint.hinge);
+        let sprung = sprung.filter(|hinge| hinge.stiffness_n_m_rad > 0.0);
+        let rest = sprung.map(|hinge| hinge.rest_rad.abs()).fold(0.0, f64::max);
+        let longest = self.beams.iter().map(|beam| beam.piece.length).fold(0.0, f64::max);
+        all.transverse = all.transverse.max(rest * longest);
+        all.transverse_rate = all.transverse_rate.max(rest * longest * all.frequency);
+        all
     }
 
     /// Place of an end in the straight structure [m].

@@ -30,12 +30,12 @@ fn measure_balances(name: &str, formulation: &str, coupling: Option<&str>, end: 
 
 fn closes(name: &str, end: f64) {
     let case = shipped::<&str>(name, &[]);
-    let bladders = case.bladders;
-    let unlike = bladders.as_ref().is_some_and(|b| !b.lower.is_mirrored());
+    let bladders = case.bladders.as_ref();
+    let unlike = bladders.is_some_and(|b| !b.lower.is_mirrored());
     let conservative =
         unlike || case.is_structure() || case.rotating_frame.is_some() || case.loads.iter().any(Load::is_rest);
     // a strain energy and unlike rows allow only one coupling and one formulation; rest curvature and rotating frames one formulation
-    let nonlinear = bladders.as_ref().is_some_and(|b| b.strain_energy.is_some());
+    let nonlinear = bladders.is_some_and(|b| b.strain_energy.is_some());
     // with the slopes of the paper's beam the pressures of the clamped strip drive it: its motion diverges within 16 ms
     let diverges = name == "clamped-strip";
     let couplings: &[Option<&str>] = match bladders {

@@ -251,7 +251,7 @@ pub fn energies(system: &System, now: &TimeData, w: CompleteState) -> StoredEner
         .map(|attached| attached.energy(system, now, &w))
         .sum();
     let in_bed = system.foundation.iter().zip(&w.motion.u);
-    e.springs += system.joints.energies(&w)[0];
+    e.springs += system.joints.energies(now, &w)[0];
     e.springs += in_bed
         .map(|([x, z], u)| 0.5 * (x * u.x * u.x + z * u.z * u.z))
         .sum::<f64>();

@@ -275,7 +275,7 @@ pub fn energies(system: &System, now: &TimeData, w: &Workspace<f64>) -> StoredEn
             e.kinetic += kinetic;
             e.rotary += rotary;
         }
-        e.rotary += system.joints.energies(w)[1];
+        e.rotary += system.joints.energies(now, w)[1];
     }
     for (c, &h) in mesh.lengths.iter().enumerate() {
         if system.model.effects.has(Effect::AxialStretch) {

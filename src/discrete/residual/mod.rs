@@ -115,7 +115,7 @@ pub fn residual<T: Scalar>(system: &System, now: &TimeData, y: &[T], yp: &[T], w
 pub fn equations<T: Scalar>(system: &System, now: &TimeData, y: &[T], yp: &[T], w: &Workspace<T>, r: &mut [T]) {
     momentum::momentum(system, now, w, r);
     rows::motion(system, y, yp, r);
-    system.joints.rows(system, y, yp, w, r);
+    system.joints.rows((system, now), y, yp, w, r);
     timoshenko::rows(system, w, r);
     relaxation::rows(system, now, w, r);
     rows::means(system, w, r);
