@@ -333,6 +333,26 @@ const INDEX: &[(&str, &str, &str)] = &[
     ),
     ("[E102]", "tests/laws/snapping.rs", "a_snapping_dome_follows_its_curve"),
     ("[E103]", "tests/laws/snapping.rs", "a_vessel_opens_a_valve"),
+    (
+        "[E104]",
+        "tests/structures/rearranged.rs",
+        "a_hinge_yields_by_its_spring_and_its_stop",
+    ),
+    (
+        "[E105]",
+        "tests/structures/mechanisms.rs",
+        "a_flexible_four_bar_turns_as_by_spectral_elements",
+    ),
+    (
+        "[E106]",
+        "tests/structures/mechanisms.rs",
+        "a_flexible_slider_crank_moves_as_by_spectral_elements",
+    ),
+    (
+        "[E107]",
+        "tests/structures/touching.rs",
+        "beams_pressed_together_overlap_by_the_law",
+    ),
 ];
 
 #[test]

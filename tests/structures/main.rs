@@ -1,4 +1,4 @@
-//! Structures of several beams, [E104] and [E105]: cut and joined shipped cases, frames, mechanisms, networks over beams, derivatives,
+//! Structures of several beams, [E104] to [E107]: cut and joined shipped cases, frames, mechanisms, networks over beams, derivatives,
 //! growth of the work with the number of beams.
 //!
 //! Sources: single beams, shooting in exact elastica equations, dynamic stiffness, spectral elements with Radau's method, circuit theory.
@@ -21,3 +21,4 @@ mod plans;
 mod rearranged;
 #[path = "../common/scene.rs"]
 mod scene;
+mod touching;
