@@ -90,8 +90,8 @@ impl Unphysical {
         let crossing = met.crossing.map(|(places, when)| {
             let [first, second] = places.map(|place| self.place_along(place));
             Code::BeyondRange.warning(format!(
-                "the beam crosses itself: {first} and {second} meet from {} on. The model has no contact of the beam \
-                 with itself: later states are not valid. {remedy}.",
+                "the beam crosses itself: {first} and {second} meet from {} on. The case has no contact of the beam \
+                 with itself (/beam_contacts): later states are not valid. {remedy}.",
                 at(when)
             ))
         });
