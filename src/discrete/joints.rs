@@ -28,7 +28,7 @@ const NEAR: f64 = 1e-9;
 /// ```
 ///
 /// Curvatures of joined ends are those of [E11] with the angle of the joint as their slope. Two beams in one line, joined rigidly, have the
-/// equations of one beam.
+/// equations of one beam, but for bending viscosity between unlike pressures, where they agree to first order in the cells.
 #[derive(Clone, Debug, Default)]
 pub struct MeshJoints {
     /// Ends that follow the first end of their joint.
