@@ -274,10 +274,16 @@ fn fingers(count: usize, feed_m: f64, tube_inertia: &str) -> Value {
         .iter()
         .map(|name| json!({"from": {"junction": "manifold"}, "to": {"bladder": format!("{name}:1"), "end": "inlet"}}));
     let feed = json!({"from": {"junction": "in"}, "to": {"junction": "manifold"}, "length_m": feed_m});
+    let beams = names.iter().enumerate().map(|(k, name)| {
+        let mut finger = held(beam(name, 0.04, 0.0, 4), "root", json!("clamped"));
+        finger["origin_m"] = json!([0.1 * k as f64, 0.0]);
+        finger
+    });
+    let beams: Vec<Value> = beams.collect();
     json!({
         "name": "fingers", "preset": "matia-gat-beam", "bladders": {"coupling": "reciprocal"},
         "beam": {"damping": {"bending_time_s": 5e-3, "axial_time_s": 5e-3}},
-        "beams": names.iter().map(|name| held(beam(name, 0.04, 0.0, 4), "root", json!("clamped"))).collect::<Vec<_>>(),
+        "beams": beams,
         "network": {
             "chains": names.iter().map(|name| json!({"bladders": bladders(name), "ends": ["connected", "sealed"]})).collect::<Vec<_>>(),
             "junctions": ["in", "manifold"], "ports": [{"name": "in", "at": {"junction": "in"}, "pressure_pa": ramp}],
