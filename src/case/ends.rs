@@ -96,6 +96,16 @@ pub struct Follower {
     pub shear: Signal,
 }
 
+impl ResolvedEnd {
+    /// A free end without loads.
+    pub const FREE: Self = Self {
+        transverse: Translation::Force(Signal::Constant(0.0)),
+        rotation: Rotation::Moment(Signal::Constant(0.0)),
+        axial: Translation::Force(Signal::Constant(0.0)),
+        follower: None,
+    };
+}
+
 impl End {
     /// Name of the form, and its given conditions.
     pub fn form(&self) -> (&'static str, &EndConditions) {

@@ -2,15 +2,17 @@
 
 use super::quantities::MeshProbe;
 use super::{
-    BeamMesh, ContactPoint, MeshSections, MeshedAttachment, MeshedBody, SampledLoad, sampled_load, smooth_parts,
+    BeamMesh, ContactPoint, MeshSections, MeshedAttachment, MeshedBody, SampledLoad, System, Workspace, sampled_load,
+    smooth_parts,
 };
 use crate::case::schema::Case;
 use crate::case::spans;
 use crate::model::loads::LoadKind;
 use crate::model::structure::BeamOfStructure;
 use crate::model::{Model, Structure};
+use crate::numerics::{Planar, Scalar};
 
-/// What belongs to the nodes and cells of beams.
+/// Parts of a system that belong to the nodes and cells of beams.
 pub struct BeamParts {
     /// Mesh.
     pub mesh: BeamMesh,
@@ -37,10 +39,10 @@ pub struct BeamParts {
 impl BeamParts {
     /// Beams of a model.
     pub fn new(case: &Case, model: &Model) -> Self {
-        match &model.structure {
-            None => Self::of_beam(case, model),
-            Some(structure) => Self::of_structure(structure, model),
-        }
+        let structure = model.structure.as_ref();
+        structure
+            .and_then(|structure| Self::of_structure(structure, model))
+            .unwrap_or_else(|| Self::of_beam(case, model))
     }
 
     fn of_beam(case: &Case, model: &Model) -> Self {
@@ -80,7 +82,7 @@ impl BeamParts {
     }
 
     /// Beams of a structure, one after the other. Signals are those of the whole model.
-    fn of_structure(structure: &Structure, model: &Model) -> Self {
+    fn of_structure(structure: &Structure, model: &Model) -> Option<Self> {
         let one = |beam: &BeamOfStructure| {
             let mut own = beam.model.clone();
             own.effects = model.effects.clone();
@@ -94,22 +96,18 @@ impl BeamParts {
             Self::on_mesh(&beam.case, &own, mesh.divided(&jumps).of_order(2).portion(portion))
         };
         let each: Vec<Self> = structure.beams.iter().map(one).collect();
-        let meshes = each.iter().map(|one| one.mesh.clone()).collect();
-        let all = BeamMesh::joined(meshes);
-        let mut joined: Option<Self> = None;
-        for (k, (next, beam)) in each.into_iter().zip(&structure.beams).enumerate() {
-            let [nodes, segments] = [&all.beams[k].nodes, &all.beams[k].segments].map(|range| range.start);
+        let all = each.iter().map(|one| one.mesh.nodes).sum();
+        let mut before = [0, 0];
+        let moved = each.into_iter().zip(&structure.beams).map(|(next, beam)| {
             let firsts = beam.of_structure.each_ref().map(|range| range.start);
-            let next = next.moved([nodes, segments], firsts, all.nodes);
-            joined = Some(match joined {
-                None => next,
-                Some(joined) => joined.followed_by(next),
-            });
-        }
-        let joined = joined.unwrap_or_else(|| unreachable!("a structure has a beam"));
-        let mut result = Self { mesh: all, ..joined };
-        result.attached.sort_by_key(|attached| attached.node);
-        result
+            let own = [next.mesh.nodes, next.mesh.segments];
+            let next = next.moved(before, firsts, all);
+            before = [before[0] + own[0], before[1] + own[1]];
+            next
+        });
+        let mut joined = moved.reduce(Self::followed_by)?;
+        joined.attached.sort_by_key(|attached| attached.node);
+        Some(joined)
     }
 
     /// The same on a mesh in which its first node has another number, with the numbers of the first load, attachment and contact, and with
@@ -131,7 +129,7 @@ impl BeamParts {
     /// The same, followed by those of another beam.
     fn followed_by(mut self, next: Self) -> Self {
         self.sections.append(next.sections, self.mesh.nodes);
-        self.mesh = BeamMesh::joined(vec![self.mesh, next.mesh]);
+        self.mesh = BeamMesh::joined(self.mesh, [next.mesh]);
         self.loads.extend(next.loads);
         self.attached.extend(next.attached);
         self.bodies.extend(next.bodies);
@@ -141,5 +139,44 @@ impl BeamParts {
         self.masses.extend(next.masses);
         self.lengths.extend(next.lengths);
         self
+    }
+}
+
+impl System {
+    /// Position of a node in the axes of the case [m].
+    pub fn position(&self, w: &Workspace<f64>, node: usize) -> Planar<f64> {
+        self.place(&w.motion.u, node)
+    }
+
+    /// Position of a node in the axes of the case [m], from the displacements of all nodes.
+    pub fn place<T: Scalar>(&self, u: &[Planar<T>], node: usize) -> Planar<T> {
+        let along = Planar::constant(Planar {
+            x: 0.0,
+            z: self.mesh.node_coordinate(node),
+        });
+        let own = along + u[node];
+        match &self.model.structure {
+            None => own,
+            Some(structure) => {
+                Planar::constant(structure.beams[self.mesh.beam_of_node(node)].piece.origin)
+                    + self.in_axes_of_case(node, own)
+            }
+        }
+    }
+
+    /// A vector at a node along the axes of the case, from that along the axes of its beam.
+    pub fn in_axes_of_case<T: Scalar>(&self, node: usize, v: Planar<T>) -> Planar<T> {
+        match &self.model.structure {
+            None => v,
+            Some(structure) => structure.beams[self.mesh.beam_of_node(node)].piece.turned(v),
+        }
+    }
+
+    /// A vector at a node along the axes of its beam, from that along the axes of the case.
+    pub fn in_axes_of_beam<T: Scalar>(&self, node: usize, v: Planar<T>) -> Planar<T> {
+        match &self.model.structure {
+            None => v,
+            Some(structure) => structure.beams[self.mesh.beam_of_node(node)].piece.own(v),
+        }
     }
 }

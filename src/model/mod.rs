@@ -201,7 +201,7 @@ impl Model {
         let structure = Structure::from_case(case, &effects);
         let scales = match &structure {
             None => Scales::estimate(case, &section, wet.as_ref()),
-            Some(structure) => structure.scales(wet.as_ref()),
+            Some(structure) => structure.scales(case, &section, wet.as_ref()),
         };
         if let Some(wet) = &mut wet {
             wet.reduce(&effects);
@@ -254,9 +254,8 @@ impl Model {
 
     /// Conditions at root and tip of the only beam, or of the first one.
     pub fn root_and_tip(&self) -> &[ResolvedEnd; 2] {
-        self.ends
-            .first_chunk()
-            .unwrap_or_else(|| unreachable!("a beam has two ends"))
+        static FREE: [ResolvedEnd; 2] = [ResolvedEnd::FREE, ResolvedEnd::FREE];
+        self.ends.first_chunk().unwrap_or(&FREE)
     }
 
     /// Section of a segment.

@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use super::{EffectSet, Model, Scales, Wet, mean_section};
+use super::{EffectSet, Model, Scales, Section, Wet, mean_section};
 use crate::case::schema::{Attachment, Case, Contact, ElasticJoint, Hinge, JointKind, Load};
 use crate::case::structure::{self, Piece};
 use crate::functions::Signal;
@@ -132,14 +132,14 @@ impl Structure {
     }
 
     /// Largest scales of its beams, and of the motion to the rest angles of hinges.
-    pub fn scales(&self, wet: Option<&Wet>) -> Scales {
+    pub fn scales(&self, case: &Case, section: &Section, wet: Option<&Wet>) -> Scales {
         let each = self
             .beams
             .iter()
             .map(|beam| Scales::estimate(&beam.case, &beam.model.section, wet));
         let mut all = each
             .reduce(|all, one| all.larger(&one))
-            .unwrap_or_else(|| unreachable!("a structure has a beam"));
+            .unwrap_or_else(|| Scales::estimate(case, section, wet));
         let sprung = self.joints.iter().filter_map(|joint| joint.hinge);
         let sprung = sprung.filter(|hinge| hinge.stiffness_n_m_rad > 0.0);
         let rest = sprung.map(|hinge| hinge.rest_rad.abs()).fold(0.0, f64::max);

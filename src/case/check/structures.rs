@@ -287,7 +287,7 @@ fn no_energy(matrix: &[[f64; 3]; 3]) -> Option<String> {
 fn places(case: &Case, faults: &mut Violations) {
     for (k, origin) in structure::origins(case).iter().enumerate() {
         if origin.is_none() {
-            let what = format!("nothing says where \"{}\" is", case.beams[k].name);
+            let what = format!("the position of \"{}\" is not given", case.beams[k].name);
             let fault = Violation::new(Code::Missing, format!("/beams/{k}"), what);
             faults.push_at_key(fault.hint("give origin_m, or join it to another beam"));
         }

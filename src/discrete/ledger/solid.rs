@@ -8,7 +8,7 @@ use crate::discrete::residual::solid::{couple, node_stretch};
 use crate::discrete::residual::{eccentric, fourth_order, relaxation};
 use crate::discrete::{System, TimeData, Workspace, attached};
 use crate::model::Kinematics;
-use crate::numerics::{Planar, Scalar};
+use crate::numerics::Planar;
 
 /// Powers and impulses of loads, ends, damping, and of the published form.
 pub fn flows(
@@ -315,45 +315,6 @@ fn spin(system: &System, w: &Workspace<f64>, c: usize) -> f64 {
         1.0
     };
     system.sections.rotary[c] * factor * turning_rate(system, w, c)
-}
-
-impl System {
-    /// Position of a node in the axes of the case [m].
-    pub fn position(&self, w: &Workspace<f64>, node: usize) -> Planar<f64> {
-        self.place(&w.motion.u, node)
-    }
-
-    /// Position of a node in the axes of the case [m], from the displacements of all nodes.
-    pub fn place<T: Scalar>(&self, u: &[Planar<T>], node: usize) -> Planar<T> {
-        let along = Planar::constant(Planar {
-            x: 0.0,
-            z: self.mesh.node_coordinate(node),
-        });
-        let own = along + u[node];
-        match &self.model.structure {
-            None => own,
-            Some(structure) => {
-                Planar::constant(structure.beams[self.mesh.beam_of_node(node)].piece.origin)
-                    + self.in_axes_of_case(node, own)
-            }
-        }
-    }
-
-    /// A vector at a node along the axes of the case, from that along the axes of its beam.
-    pub fn in_axes_of_case<T: Scalar>(&self, node: usize, v: Planar<T>) -> Planar<T> {
-        match &self.model.structure {
-            None => v,
-            Some(structure) => structure.beams[self.mesh.beam_of_node(node)].piece.turned(v),
-        }
-    }
-
-    /// A vector at a node along the axes of its beam, from that along the axes of the case.
-    pub fn in_axes_of_beam<T: Scalar>(&self, node: usize, v: Planar<T>) -> Planar<T> {
-        match &self.model.structure {
-            None => v,
-            Some(structure) => structure.beams[self.mesh.beam_of_node(node)].piece.own(v),
-        }
-    }
 }
 
 /// Moment arms (x, z) of a node's momentum and force about the origin, i.e. its position, and their rates. A small

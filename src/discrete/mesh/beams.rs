@@ -40,15 +40,9 @@ pub struct BeamEnd {
 impl BeamMesh {
     /// Mesh of several beams, one after the other. Between two beams is an empty cell without length, so that a cell is between the node of
     /// its number and the next. Coordinates are those along each beam.
-    ///
-    /// # Panics
-    /// Without a mesh.
-    pub fn joined(meshes: Vec<Self>) -> Self {
-        let mut meshes = meshes.into_iter();
-        let Some(mut all) = meshes.next() else {
-            unreachable!("a structure has a beam")
-        };
-        for next in meshes {
+    pub fn joined(first: Self, others: impl IntoIterator<Item = Self>) -> Self {
+        let mut all = first;
+        for next in others {
             let (node, segment) = (all.nodes, all.segments);
             all.lengths.push(0.0);
             all.per_length.push(0.0);
