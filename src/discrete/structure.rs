@@ -2,13 +2,14 @@
 
 use super::quantities::MeshProbe;
 use super::{
-    BeamMesh, ContactPoint, MeshSections, MeshedAttachment, MeshedBody, SampledLoad, sampled_load, smooth_parts,
+    BeamMesh, ContactPoint, MeshSections, MeshedAttachment, MeshedBody, SampledLoad, System, sampled_load, smooth_parts,
 };
 use crate::case::schema::Case;
 use crate::case::spans;
 use crate::model::loads::LoadKind;
 use crate::model::structure::BeamOfStructure;
 use crate::model::{Model, Structure};
+use crate::numerics::Planar;
 
 /// What belongs to the nodes and cells of beams.
 pub struct BeamParts {
@@ -32,6 +33,31 @@ pub struct BeamParts {
     pub masses: Vec<f64>,
     /// Lengths over which mass and surroundings act on the nodes [m].
     pub lengths: Vec<f64>,
+}
+
+impl System {
+    /// Position of a node of the straight beam or structure in the axes of the case [m].
+    pub fn rest_position(&self, node: usize) -> Planar<f64> {
+        let own = Planar {
+            x: 0.0,
+            z: self.mesh.node_coordinate(node),
+        };
+        match &self.model.structure {
+            None => own,
+            Some(structure) => {
+                structure.beams[self.mesh.beam_of_node(node)].piece.origin + self.in_axes_of_case(node, own)
+            }
+        }
+    }
+
+    /// Part of the mesh whose tip is that of the beam, in a structure that of its first beam.
+    pub fn first_tip(&self) -> usize {
+        let structure = self.model.structure.as_ref();
+        structure.map_or(0, |structure| {
+            let tip = structure.beams.iter().position(|beam| beam.piece.at_end[1]);
+            tip.unwrap_or(0)
+        })
+    }
 }
 
 impl BeamParts {
@@ -91,7 +117,14 @@ impl BeamParts {
             let portion = [beam.piece.from, beam.piece.length].map(|length| length / beam.whole);
             let mesh = BeamMesh::new(own.length, lengths, beam.case.mesh.cells_per_segment);
             let jumps = smooth_parts::jumps(&beam.case, &own, &mesh.segment_lengths);
-            Self::on_mesh(&beam.case, &own, mesh.divided(&jumps).of_order(2).portion(portion))
+            let mut parts = Self::on_mesh(&beam.case, &own, mesh.divided(&jumps).of_order(2).portion(portion));
+            let along = |share: f64| portion[0] + share * portion[1];
+            parts.probes.iter_mut().for_each(|probe| probe.at = along(probe.at));
+            if beam.piece.at_end[1] {
+                let tip = MeshProbe::at_tip(&beam.name, &parts.mesh, &parts.sections);
+                parts.probes.push(tip);
+            }
+            parts
         };
         let each: Vec<Self> = structure.beams.iter().map(one).collect();
         let meshes = each.iter().map(|one| one.mesh.clone()).collect();

@@ -6,6 +6,7 @@
 //! fields       along the beam and the network, with their axes
 //! probes       over time, at places that the case names
 //! stations     over time, at ports, in accumulators and at walls
+//! placed_nodes places of the nodes of a structure
 //! reactions    over time, of what holds the beam
 //! evaluate     how a state is read
 //! row          the values of all of them at one instant
@@ -18,6 +19,7 @@ pub mod evaluate;
 pub mod fields;
 pub mod interest;
 pub mod observables;
+mod placed_nodes;
 pub mod probes;
 mod reactions;
 pub mod row;
@@ -27,5 +29,6 @@ pub use evaluate::{Extremes, StateView};
 pub use fields::{BeamField, FieldAxis};
 pub use interest::{Interest, InterestSource};
 pub use observables::{Group, Observable, QuantityRole, QuantitySource};
+pub use placed_nodes::PlacedNodes;
 pub use probes::MeshProbe;
 pub use row::ObservableRow;

@@ -15,14 +15,16 @@ use super::folder::{ResultFolder, fault};
 use super::numbers::{counted, significant};
 use super::plot::canvas::{INK, LineStyle};
 use super::plot::colour::{Colour, PALETTE};
+use super::plot::deflection::structure_panel;
 use super::plot::picture::{Panel, Picture, PictureAxis, PictureSeries};
 use crate::case::schema::Effect;
+use crate::discrete::quantities::{FieldAxis, PlacedNodes};
 use crate::error::{Code, Result};
 use crate::model::passivity::{self, Passivity};
 use crate::results;
 use crate::results::modes::{self as kept, LinearisedState};
 use crate::results::run::Bands;
-use crate::run::modes::{Mode, ModeFilter, ModeOptions, ModeSensitivity, Modes, TimeBehavior};
+use crate::run::modes::{Mode, ModeFilter, ModeOptions, ModeSensitivity, ModeShape, Modes, TimeBehavior};
 use crate::run::summary::Accuracy;
 use crate::study::refine;
 
@@ -283,8 +285,13 @@ fn pack(found: &Modes) -> io::Result<Vec<u8>> {
     let count = found.modes.len() as u64;
     let one = |f: fn(&Mode) -> f64| found.modes.iter().map(f);
     let nodes = system.mesh.nodes;
-    let theta = (0..nodes).map(|i| system.mesh.node_coordinate(i));
-    write_array(&mut npz, "theta_m", &[nodes as u64], theta)?;
+    let along = |axis: FieldAxis| axis.values(system, 0.0).into_iter();
+    write_array(&mut npz, "theta_m", &[nodes as u64], along(FieldAxis::Nodes))?;
+    if system.model.structure.is_some() {
+        for axis in [FieldAxis::BeamOfNode, FieldAxis::RestX, FieldAxis::RestZ, FieldAxis::RestAngle] {
+            write_array(&mut npz, axis.name(), &[nodes as u64], along(axis))?;
+        }
+    }
     write_array(&mut npz, "growth_per_s", &[count], one(|m| m.s.re))?;
     write_array(&mut npz, "angular_frequency_per_s", &[count], one(|m| m.s.im))?;
     type Field = fn(&Mode) -> &[Complex<f64>];
@@ -311,35 +318,63 @@ const DRAWN: usize = 8;
 
 /// Picture of the shapes: displacements on the left, pressures on the right.
 fn drawn(report: &Report) -> Option<String> {
-    let mesh = &report.found.about.system().mesh;
-    let theta: Vec<f64> = (0..mesh.nodes).map(|i| mesh.node_coordinate(i)).collect();
-    let per_row = report.found.about.system().model.wet.as_ref().map_or(0, |w| w.per_row);
+    let system = report.found.about.system();
+    let theta = FieldAxis::Nodes.values(system, 0.0);
+    let placed = PlacedNodes::new(system);
+    let per_row = system.model.wet.as_ref().map_or(0, |w| w.per_row);
     let numbers: Vec<f64> = (1..=per_row).map(|j| j as f64).collect();
     let along = PictureAxis::new("material coordinate θ", "m", 6).between(*theta.first()?, *theta.last()?);
     let row = |(k, mode): (usize, &Mode)| {
         let shape = &mode.shape;
         let beam = [(&shape.u1[..], "u₁ across"), (&shape.u3, "u₃ along")];
-        let mut left = complex(along.clone(), &theta, beam, ("u", "m"));
+        let mut left = match &placed {
+            Some(placed) => structure_shape(placed, shape)?,
+            None => complex(along.clone(), &theta, beam, ("u", "m")),
+        };
         left.heading.1.bold = true;
         left.heading.1.colour = if mode.kind.grows() { UNSTABLE } else { INK };
         left = left.headed(format!("{}  {}", k + 1, table::describe(mode)));
         let wet = per_row > 0 && shape.pressure.len() == 2 * per_row;
         let right = wet.then(|| {
             let (upper, lower) = shape.pressure.split_at(per_row);
-            let x = PictureAxis::new("bladder", "1", 10).between(0.5, per_row as f64 + 0.5);
+            let name = if placed.is_some() { "bladder, along all beams" } else { "bladder" };
+            let x = PictureAxis::new(name, "1", 10).between(0.5, per_row as f64 + 0.5);
             complex(x, &numbers, [(upper, "upper row"), (lower, "lower row")], ("p", "Pa"))
         });
-        [left].into_iter().chain(right).collect()
+        Some([left].into_iter().chain(right).collect())
     };
+    let lines = match &placed {
+        Some(_) => "shapes enlarged, two opposite instants; of pressures full lines in phase, dashed a quarter of a period behind",
+        None => "full lines in phase, dashed a quarter of a period behind",
+    };
+    let modes = report.found.modes.iter();
     let picture = Picture {
         title: format!("{} · modes", report.case),
-        about: format!(
-            "about {}; full lines in phase, dashed a quarter of a period behind",
-            report.about()
-        ),
-        rows: report.found.modes.iter().take(DRAWN).enumerate().map(row).collect(),
+        about: format!("about {}; {lines}", report.about()),
+        rows: modes.take(DRAWN).enumerate().map(row).collect::<Option<_>>()?,
     };
     picture.svg()
+}
+
+/// Largest displacement of a drawn mode shape, relative to the size of the structure.
+const ENLARGED: f64 = 0.12;
+
+/// Panel of the shape of a structure at the instant of its largest real part, and half a period later.
+fn structure_shape(placed: &PlacedNodes, shape: &ModeShape) -> Option<Panel> {
+    let all = || shape.u1.iter().chain(&shape.u3);
+    let largest = all().fold(0.0_f64, |most, u| most.max(u.norm()));
+    let turn = all().max_by(|a, b| a.norm().total_cmp(&b.norm())).map_or(0.0, |u| u.arg());
+    let factor = if largest > 0.0 { ENLARGED * placed.size() / largest } else { 0.0 };
+    let at = |size: f64, colour: Colour| {
+        let real = |u: &[Complex<f64>]| -> Vec<f64> {
+            let of = |u: &Complex<f64>| size * (u * Complex::from_polar(1.0, -turn)).re;
+            u.iter().map(of).collect()
+        };
+        let line = placed.line(&real(&shape.u1), &real(&shape.u3));
+        PictureSeries::line(line, LineStyle::solid(colour, 1.6))
+    };
+    let both = vec![at(-factor, PALETTE[1]), at(factor, PALETTE[0])];
+    structure_panel(placed, both, 380.0)
 }
 
 /// Panel of two complex curves over an axis.

@@ -1,9 +1,8 @@
 //! The page of `equilibrium`: the path of states under growing loads.
 
-use std::path::Path;
-
 use serde_json::{Value, json};
 
+use super::placed::{self, thinned_nodes};
 use super::{FolderKind, Page, Place, base64, csv_table};
 use crate::error::Result;
 use crate::output::bands;
@@ -76,7 +75,7 @@ pub fn data(place: &Place) -> Result<Page> {
         ],
         "tiles": std::iter::once(first).chain(others).flatten().collect::<Vec<_>>(),
         "events": found.events, "derivatives": found.sensitivities,
-        "path": csv_table::read(&place.path(CSV), |_| true), "shapes": shapes(&place.path(SHAPES)),
+        "path": csv_table::read(&place.path(CSV), |_| true), "shapes": shapes(place),
         "command": format!("slcbeam equilibrium {CASE}{} --at {at} --load-factor {share}", via(&found)),
     }));
     Ok(page)
@@ -124,12 +123,13 @@ fn answer(found: &EquilibriumPath, share: f64) -> String {
 }
 
 /// Positions of the nodes in some of the states, the last among them.
-fn shapes(path: &Path) -> Value {
+fn shapes(place: &Place) -> Value {
     let read = || -> csv::Result<Vec<Vec<f64>>> {
-        let mut reader = csv::Reader::from_reader(open(path)?);
-        let rows = reader
-            .records()
-            .map(|r| Ok(r?.iter().map(|x| x.parse().unwrap_or(f64::NAN)).collect()));
+        let mut reader = csv::Reader::from_reader(open(&place.path(SHAPES))?);
+        // rows of a structure begin with the name of the beam
+        let named = usize::from(reader.headers()?.get(0) == Some("beam"));
+        let row = |r: csv::StringRecord| r.iter().skip(named).map(|x| x.parse().unwrap_or(f64::NAN)).collect();
+        let rows = reader.records().map(|r| Ok(row(r?)));
         rows.collect()
     };
     let Ok(rows) = read() else { return Value::Null };
@@ -140,14 +140,21 @@ fn shapes(path: &Path) -> Value {
     let step = states.div_ceil(MOST_STATES);
     let mut kept: Vec<usize> = (0..states).rev().step_by(step).collect();
     kept.reverse();
-    let stride = rows.len().div_ceil(MOST_NODES);
-    let last = rows.len() - 1;
-    let nodes: Vec<usize> = (0..rows.len()).filter(|k| k % stride == 0 || *k == last).collect();
+    let placed = place.placed(rows.len());
+    let nodes = match &placed {
+        Some(_) => thinned_nodes(rows.len(), placed.as_ref(), MOST_NODES),
+        None => {
+            let (stride, last) = (rows.len().div_ceil(MOST_NODES), rows.len() - 1);
+            (0..rows.len()).filter(|k| k % stride == 0 || *k == last).collect()
+        }
+    };
     let along = |offset: usize| {
         let pairs = kept.iter().flat_map(|s| nodes.iter().map(move |k| (s, k)));
         base64::numbers(pairs.map(|(s, k)| rows[*k][1 + 2 * s + offset]))
     };
-    json!({
+    let mut page = json!({
         "states": kept, "theta": base64::numbers(nodes.iter().map(|&k| rows[k][0])), "x": along(0), "z": along(1),
-    })
+    });
+    placed::add(&mut page, placed.as_ref(), &nodes);
+    page
 }

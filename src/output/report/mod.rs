@@ -43,12 +43,14 @@ mod modes;
 mod optimum;
 mod page;
 mod parameters;
+mod placed;
 mod per_cycle;
 mod response;
 mod run;
 mod scene;
 mod sense;
 mod signals;
+mod structure;
 mod studies;
 mod warnings;
 
