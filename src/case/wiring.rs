@@ -169,13 +169,19 @@ pub struct BladderLabels {
 impl BladderLabels {
     /// Labels of a case.
     pub fn from_case(case: &Case) -> Self {
+        let beams = case.beams.iter();
+        let per_row = case.bladders.as_ref().map_or(0, |bladders| bladders.per_row);
+        Self::new(per_row, beams.map(|beam| (beam.name.clone(), beam.segments.unwrap_or(1))))
+    }
+
+    /// Labels for a number of bladders in a row, and for the names and numbers of segments of the beams of a structure.
+    pub fn new(per_row: usize, beams: impl Iterator<Item = (String, usize)>) -> Self {
         let mut behind = 0;
-        let beams = case.beams.iter().map(|beam| {
-            behind += beam.segments.unwrap_or(1);
-            (beam.name.clone(), behind)
+        let beams = beams.map(|(name, segments)| {
+            behind += segments;
+            (name, behind)
         });
         let beams = beams.collect();
-        let per_row = case.bladders.as_ref().map_or(0, |bladders| bladders.per_row);
         Self { per_row, beams }
     }
 

@@ -134,6 +134,11 @@ pub fn key(name: &str, unit: &str) -> String {
     }
 }
 
+/// Beam and quantity of the column or figure of a tip of a structure: `left` and `u1` of `left.tip_u1`, `u1_m` of `left.tip_u1_m`.
+pub fn tip_of_beam(name: &str) -> Option<(&str, &str)> {
+    name.split_once(".tip_")
+}
+
 /// True if the name of a column is that of a stress of the solid. It has the unit of fluid pressures but another order
 /// of magnitude.
 pub fn is_stress(name: &str) -> bool {

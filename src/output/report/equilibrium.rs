@@ -17,6 +17,9 @@ const MOST_STATES: usize = 240;
 /// Largest number of nodes of a shape.
 const MOST_NODES: usize = 401;
 
+/// Largest number of beams of a structure whose tips have tiles.
+const MOST_BEAMS: usize = 4;
+
 /// Figures of the last state: label, quantity, unit, note.
 const TILES: [(&str, &str, &str, &str); 4] = [
     ("Tip, across", "tip_u1_m", "m", "deflection u₁ in the last state"),
@@ -61,19 +64,30 @@ pub fn data(place: &Place) -> Result<Page> {
         _ => ["Load factor", "at the end of the path; every stage before counts 1"],
     };
     let first = tile(label, ("", found.load_factor), "1", note);
+    let beams: Vec<&str> = place.case.iter().flat_map(|case| &case.beams).map(|beam| beam.name.as_str()).collect();
+    let single = |(_, name, ..): &&(&str, &str, &str, &str)| beams.is_empty() || !name.starts_with("tip_");
     let others = TILES
         .iter()
+        .filter(single)
         .map(|(label, name, unit, note)| tile(label, (name, last(name)), unit, note));
+    let of_beams = beams.iter().take(MOST_BEAMS).flat_map(|beam| {
+        [("u₁", "u1_m"), ("u₃", "u3_m")].map(|(symbol, key)| {
+            let name = format!("{beam}.tip_{key}");
+            let note = format!("displacement in the axes of {beam} in the last state");
+            tile(&format!("Tip of {beam}, {symbol}"), (&name, last(&name)), "m", &note)
+        })
+    });
+    let of_beams: Vec<_> = of_beams.collect();
     let tone = if found.status == Status::Failed { "bad" } else { "good" };
     page.fill(json!({
-        "label": "Static equilibrium", "headlines": super::history::headlines(),
-        "status": {"word": found.status, "tone": tone, "reason": found.reason}, "answer": answer(&found, share),
+        "label": "Static equilibrium", "headlines": super::history::headlines(&beams),
+        "status": {"word": found.status, "tone": tone, "reason": found.reason}, "answer": answer(&found, share, if beams.is_empty() { "beam" } else { "structure" }),
         "facts": [
             counted(found.states as u64, "state"),
             counted(found.solver.newton_iterations, "Newton step"),
             format!("found in {}", duration(found.wall_s.total)),
         ],
-        "tiles": std::iter::once(first).chain(others).flatten().collect::<Vec<_>>(),
+        "tiles": std::iter::once(first).chain(of_beams).chain(others).flatten().collect::<Vec<_>>(),
         "events": found.events, "derivatives": found.sensitivities,
         "path": csv_table::read(&place.path(CSV), |_| true), "shapes": shapes(place),
         "command": format!("slcbeam equilibrium {CASE}{} --at {at} --load-factor {share}", via(&found)),
@@ -92,7 +106,7 @@ fn via(found: &EquilibriumPath) -> String {
     }
 }
 
-fn answer(found: &EquilibriumPath, share: f64) -> String {
+fn answer(found: &EquilibriumPath, share: f64, thing: &str) -> String {
     let short = |x: f64| trimmed(&significant(x, 4));
     let loads = match found.via_s.last() {
         None => format!(
@@ -119,7 +133,7 @@ fn answer(found: &EquilibriumPath, share: f64) -> String {
         1 => "The path to it has one event, listed below.".to_string(),
         n => format!("The path to it has {n} events, listed below."),
     };
-    format!("Under {loads} the beam rests in the state shown; {stability}. {way}")
+    format!("Under {loads} the {thing} rests in the state shown; {stability}. {way}")
 }
 
 /// Positions of the nodes in some of the states, the last among them.
