@@ -57,7 +57,13 @@ fn places(from: &Recording, field: &Array) -> Vec<String> {
         Some(theta) => theta
             .iter()
             .enumerate()
-            .map(|(k, &x)| format!("{}theta={} m", beam(k).unwrap_or_default(), shortest(x)))
+            .map(|(k, &x)| {
+                let of = beam(k);
+                // parts of a beam meet in two nodes at a joint
+                let again = of.is_some() && k > 0 && theta[k - 1] == x;
+                let behind = if again { " behind the joint" } else { "" };
+                format!("{}theta={} m{behind}", of.unwrap_or_default(), shortest(x))
+            })
             .collect(),
         None => (0..field.len).map(|k| format!("place={k}")).collect(),
     }

@@ -374,7 +374,7 @@ fn structure_shape(placed: &PlacedNodes, shape: &ModeShape) -> Option<Panel> {
         PictureSeries::line(line, LineStyle::solid(colour, 1.6))
     };
     let both = vec![at(-factor, PALETTE[1]), at(factor, PALETTE[0])];
-    structure_panel(placed, both, 380.0)
+    structure_panel(placed, both, 260.0)
 }
 
 /// Panel of two complex curves over an axis.

@@ -15,7 +15,7 @@ pub fn add(scene: &mut Value, case: &Case) {
     let end_s = case.time.end_s;
     let (pieces, joints) = structure::pieces(case);
     let lengths: Vec<f64> = case.beams.iter().map(|beam| beam.length_m.unwrap_or(0.0)).collect();
-    let from = |beam: usize| lengths[..beam].iter().sum::<f64>();
+    let from = |beam: usize| lengths[..beam].iter().sum::<f64>() + 0.0;
     let joined = |beam: usize, at_tip: bool| {
         let own = |k: &usize| pieces[k / 2].beam == beam && (k % 2 == 1) == at_tip && pieces[k / 2].at_end[k % 2];
         joints.iter().flatten().flat_map(Place::ends).any(|k| own(k))

@@ -18,18 +18,18 @@ function showPath() {
     const nodes = placeNodes(shapes.placed, scene);
     const moved = (values, rest) => Float64Array.from(values, (value, k) => value - rest[k % n]);
     // Displacements of a structure are along the axes of the case.
-    const [u1, u3] = nodes ? [moved(x, nodes.x), moved(z, nodes.z)] : [null, null];
+    const [up, right] = nodes ? [moved(x, nodes.x), moved(z, nodes.z)] : [null, null];
     const fixed = nodes && { ...nodes, angle: new Float64Array(n) };
-    const size = nodes ? Math.max(largest(u1), largest(u3)) : largest(x);
+    const size = nodes ? Math.max(largest(up), largest(right)) : largest(x);
     const factor = { across: roundFactor(size, scene.length), along: 1 };
     if (nodes) factor.along = factor.across;
     const bounds = straightBounds(scene);
-    if (nodes) u1.forEach((across, k) => widen(bounds, nodes.z[k % n] + u3[k] * factor.along, nodes.x[k % n] + across * factor.across));
+    if (nodes) up.forEach((across, k) => widen(bounds, nodes.z[k % n] + right[k] * factor.along, nodes.x[k % n] + across * factor.across));
     else x.forEach((across, k) => widen(bounds, z[k], across * factor.across));
     bounds.y0 -= 0.8 * scene.height;
     bounds.y1 += 0.8 * scene.height;
     const curve = (s) => {
-      if (nodes) return structureCurve(fixed, u1.subarray(s * n, (s + 1) * n), u3.subarray(s * n, (s + 1) * n), factor, null);
+      if (nodes) return structureCurve(fixed, up.subarray(s * n, (s + 1) * n), right.subarray(s * n, (s + 1) * n), factor, null);
       const u3 = new Float64Array(n);
       for (let k = 0; k < n; k++) u3[k] = z[s * n + k] - theta[k];
       return curveOf(theta, x.subarray(s * n, (s + 1) * n), u3, factor);
