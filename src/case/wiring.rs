@@ -171,7 +171,10 @@ impl BladderLabels {
     pub fn from_case(case: &Case) -> Self {
         let beams = case.beams.iter();
         let per_row = case.bladders.as_ref().map_or(0, |bladders| bladders.per_row);
-        Self::new(per_row, beams.map(|beam| (beam.name.clone(), beam.segments.unwrap_or(1))))
+        Self::new(
+            per_row,
+            beams.map(|beam| (beam.name.clone(), beam.segments.unwrap_or(1))),
+        )
     }
 
     /// Labels for a number of bladders in a row, and for the names and numbers of segments of the beams of a structure.

@@ -9,7 +9,7 @@ use super::arguments::{CaseArguments, ResultArguments};
 use super::response::check_band;
 use super::{resources, terminal};
 use crate::error::numbers::{counted, error_percent};
-use crate::error::{Code, Result};
+use crate::error::{Code, Error, Result};
 use crate::output::band_structure as files;
 use crate::output::kind::FolderKind;
 use crate::output::report;

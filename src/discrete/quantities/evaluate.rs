@@ -80,7 +80,10 @@ impl StateView<'_> {
 
     /// Angle of the tip, unwrapped to the fixed reference angle.
     pub(super) fn tip_angle(&self) -> f64 {
-        nearest(tip_angle(self.system, self.now, &self.w, self.system.first_tip()), self.at.angle)
+        nearest(
+            tip_angle(self.system, self.now, &self.w, self.system.first_tip()),
+            self.at.angle,
+        )
     }
 
     pub(super) fn max_pressure(&self) -> f64 {

@@ -181,16 +181,36 @@ impl FieldAxis {
 
     fn entry(self) -> [&'static str; 3] {
         match self {
-            Self::Nodes => ["theta_node_m", "m", "material coordinate of the nodes, along their beam"],
-            Self::Cells => ["theta_cell_m", "m", "material coordinate of the cells' midpoints, along their beam"],
+            Self::Nodes => [
+                "theta_node_m",
+                "m",
+                "material coordinate of the nodes, along their beam",
+            ],
+            Self::Cells => [
+                "theta_cell_m",
+                "m",
+                "material coordinate of the cells' midpoints, along their beam",
+            ],
             Self::Network => ["x_f", "1", "network coordinate of the bladder cells, array by array"],
             Self::Bladder => ["bladder", "1", "bladder index R j of each cell along x_f"],
             Self::Array => ["array", "1", "number of the connected array of each cell along x_f"],
             Self::BeamOfNode => ["beam_node", "1", "number of the beam of each node in /beams, from 1"],
             Self::BeamOfCell => ["beam_cell", "1", "number of the beam of each cell in /beams, from 1"],
-            Self::RestX => ["x_node_m", "m", "position x of the nodes of the straight structure, in the axes of the case"],
-            Self::RestZ => ["z_node_m", "m", "position z of the nodes of the straight structure, in the axes of the case"],
-            Self::RestAngle => ["angle_node_rad", "rad", "angle from z towards x of the straight beam of each node"],
+            Self::RestX => [
+                "x_node_m",
+                "m",
+                "position x of the nodes of the straight structure, in the axes of the case",
+            ],
+            Self::RestZ => [
+                "z_node_m",
+                "m",
+                "position z of the nodes of the straight structure, in the axes of the case",
+            ],
+            Self::RestAngle => [
+                "angle_node_rad",
+                "rad",
+                "angle from z towards x of the straight beam of each node",
+            ],
         }
     }
 

@@ -4,6 +4,7 @@
 //! observables  over time: the columns of the history, from which its derivatives, pictures, comparisons and the energy balance follow
 //! interest     in the end: the quantities of the summary
 //! fields       along the beam and the network, with their axes
+//! column       name, unit and description of a column
 //! probes       over time, at places that the case names
 //! stations     over time, at ports, in accumulators and at walls
 //! placed_nodes places of the nodes of a structure
@@ -15,6 +16,7 @@
 //! A quantity is added by a row of its table, which alone defines its name, unit, place in reports and evaluation; a test compares
 //! `docs/data.md` with the tables.
 
+mod column;
 pub mod evaluate;
 pub mod fields;
 pub mod interest;

@@ -72,7 +72,13 @@ impl PlacedNodes {
         let mut line = vec![];
         for part in self.parts() {
             let own = part.map(|node| {
-                let at = self.position(node, Planar { x: u1[node], z: u3[node] });
+                let at = self.position(
+                    node,
+                    Planar {
+                        x: u1[node],
+                        z: u3[node],
+                    },
+                );
                 (at.z, at.x)
             });
             line.extend(own);

@@ -162,14 +162,27 @@ fn shapes(found: &LoadPath, theta: &[f64], placed: Option<&PlacedNodes>) -> Stri
         let places = states.iter().flat_map(|state| match placed {
             None => [state.u1[i], theta[i] + state.u3[i]],
             Some(placed) => {
-                let at = placed.position(i, Planar { x: state.u1[i], z: state.u3[i] });
+                let at = placed.position(
+                    i,
+                    Planar {
+                        x: state.u1[i],
+                        z: state.u3[i],
+                    },
+                );
                 [at.x, at.z]
             }
         });
         let numbers = [theta[i]].into_iter().chain(places).map(shortest);
-        placed.map(|placed| name(placed.beam[i])).into_iter().chain(numbers).collect()
+        placed
+            .map(|placed| name(placed.beam[i]))
+            .into_iter()
+            .chain(numbers)
+            .collect()
     });
-    let first = placed.map(|_| "beam".to_owned()).into_iter().chain(["theta [m]".into()]);
+    let first = placed
+        .map(|_| "beam".to_owned())
+        .into_iter()
+        .chain(["theta [m]".into()]);
     records::text(first.chain(columns), rows)
 }
 
@@ -236,7 +249,10 @@ fn drawn(found: &LoadPath, theta: &[f64], placed: Option<&PlacedNodes>) -> Optio
         return None;
     }
     let width = 230.0 * panels.len().max(2) as f64 - 30.0;
-    let rows = [Some(panels), shapes_drawn(found, theta, placed, width).map(|panel| vec![panel])];
+    let rows = [
+        Some(panels),
+        shapes_drawn(found, theta, placed, width).map(|panel| vec![panel]),
+    ];
     let picture = Picture {
         title: format!("{} · equilibria", found.case.name),
         about: about(found.options),

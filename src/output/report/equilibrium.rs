@@ -64,7 +64,12 @@ pub fn data(place: &Place) -> Result<Page> {
         _ => ["Load factor", "at the end of the path; every stage before counts 1"],
     };
     let first = tile(label, ("", found.load_factor), "1", note);
-    let beams: Vec<&str> = place.case.iter().flat_map(|case| &case.beams).map(|beam| beam.name.as_str()).collect();
+    let beams: Vec<&str> = place
+        .case
+        .iter()
+        .flat_map(|case| &case.beams)
+        .map(|beam| beam.name.as_str())
+        .collect();
     let single = |(_, name, ..): &&(&str, &str, &str, &str)| beams.is_empty() || !name.starts_with("tip_");
     let others = TILES
         .iter()

@@ -5,8 +5,8 @@ use std::path::Path;
 
 use serde_json::{Value, json};
 
-use super::placed::{self, thinned_nodes};
 use super::base64;
+use super::placed::{self, thinned_nodes};
 use crate::discrete::quantities::{BeamField, PlacedNodes};
 use crate::output::arrays::TIMES;
 use crate::output::folder::damaged;
@@ -48,12 +48,17 @@ pub fn read(path: &Path, frequency: Option<f64>) -> io::Result<Value> {
     let kept: Vec<f64> = chosen.iter().map(|&k| times[k]).collect();
     let alone: Vec<Vec<usize>> = nodes.iter().map(|&k| vec![k]).collect();
     // cells on both sides of each node
-    let parts = placed.as_ref().map_or_else(|| std::iter::once(0..theta.len()).collect(), PlacedNodes::parts);
+    let parts = placed
+        .as_ref()
+        .map_or_else(|| std::iter::once(0..theta.len()).collect(), PlacedNodes::parts);
     let beside: Vec<Vec<usize>> = (nodes.iter())
         .map(|&k| {
             let before = parts.partition_point(|part| part.end <= k);
             // no cell lies between two parts
-            let (first, last) = (parts[before].start - before, (parts[before].end - before).saturating_sub(2));
+            let (first, last) = (
+                parts[before].start - before,
+                (parts[before].end - before).saturating_sub(2),
+            );
             let cell = k - before;
             vec![cell.saturating_sub(1).clamp(first, last.max(first)), cell.min(last)]
         })

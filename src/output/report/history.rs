@@ -81,7 +81,11 @@ impl ReportHistory {
         if self.rows == 0 {
             return Value::Null;
         }
-        let first = self.names.iter().find_map(|(name, _)| tip_of_beam(name)).map(|(beam, _)| beam);
+        let first = self
+            .names
+            .iter()
+            .find_map(|(name, _)| tip_of_beam(name))
+            .map(|(beam, _)| beam);
         let columns = self.names.iter().zip(&self.columns).map(|((name, unit), values)| {
             let one = Observable::named(name);
             // the tip of the observables is that of the first beam
@@ -145,7 +149,9 @@ pub fn headlines(beams: &[&str]) -> Value {
         .iter()
         .filter(|one| one.role() == QuantityRole::Headline && (beams.is_empty() || one.group() != Group::Tip));
     let labelled = all.map(|one| (one.name().to_string(), one.label().into()));
-    let tips = beams.iter().flat_map(|beam| ["u1", "u3"].map(|axis| format!("{beam}.tip_{axis}")));
+    let tips = beams
+        .iter()
+        .flat_map(|beam| ["u1", "u3"].map(|axis| format!("{beam}.tip_{axis}")));
     let of_beams = tips.map(|name| {
         let label = spoken(&name).into();
         (name, label)

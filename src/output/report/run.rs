@@ -150,7 +150,11 @@ fn time(t: f64) -> String {
 
 /// Sentence about the displacement of the tip.
 fn answer(summary: &Summary) -> Option<String> {
-    let beams: Vec<String> = summary.beams().take(MOST_BEAMS).filter_map(|beam| of_beam(summary, beam)).collect();
+    let beams: Vec<String> = summary
+        .beams()
+        .take(MOST_BEAMS)
+        .filter_map(|beam| of_beam(summary, beam))
+        .collect();
     if !beams.is_empty() {
         return Some(beams.join(" "));
     }
@@ -235,9 +239,17 @@ fn tiles(summary: &Summary) -> Vec<Value> {
             let found = summary.probes.get(&name);
             let value = found.and_then(Quantity::largest).map(settled);
             let shown = value.map(|value| figure(summary, (&name, &LARGEST), value, unit));
-            let at = found.and_then(|found| found.max_abs_at_s).map(|t| format!(", at {}", time(t)));
-            let end = found.and_then(|found| found.last).map(|x| format!("; {} at the end", quantity(settled(x), unit, 3)));
-            let note = format!("largest displacement {symbol} in the axes of {beam}{}{}", at.unwrap_or_default(), end.unwrap_or_default());
+            let at = found
+                .and_then(|found| found.max_abs_at_s)
+                .map(|t| format!(", at {}", time(t)));
+            let end = found
+                .and_then(|found| found.last)
+                .map(|x| format!("; {} at the end", quantity(settled(x), unit, 3)));
+            let note = format!(
+                "largest displacement {symbol} in the axes of {beam}{}{}",
+                at.unwrap_or_default(),
+                end.unwrap_or_default()
+            );
             tile(&format!("Tip of {beam}, {symbol}"), shown, &note);
         }
     }

@@ -77,9 +77,15 @@ fn of_hinge(hinge: &Hinge) -> String {
         (hinge.damping_n_m_s_rad, "damper", "N m s/rad"),
     ];
     let parts = parts.iter().filter(|(size, ..)| *size != 0.0);
-    let mut words: Vec<String> = parts.map(|(size, name, unit)| format!("{name} {}", q(*size, unit))).collect();
+    let mut words: Vec<String> = parts
+        .map(|(size, name, unit)| format!("{name} {}", q(*size, unit)))
+        .collect();
     if let Some(stop) = &hinge.stop {
-        words.push(format!("free from {} to {}", q(stop.from_rad, "rad"), q(stop.to_rad, "rad")));
+        words.push(format!(
+            "free from {} to {}",
+            q(stop.from_rad, "rad"),
+            q(stop.to_rad, "rad")
+        ));
     }
     match words.is_empty() {
         true => "hinge".to_owned(),

@@ -76,7 +76,10 @@ fn in_structure(case: &Case, quantity: &str, place: &str) -> std::result::Result
         .iter()
         .flat_map(|beam| {
             let probes = beam.probes.iter().map(|probe| probe.name.as_str());
-            ["tip"].into_iter().chain(probes).map(|place| format!("{}.{place}", beam.name))
+            ["tip"]
+                .into_iter()
+                .chain(probes)
+                .map(|place| format!("{}.{place}", beam.name))
         })
         .collect();
     match places.iter().any(|known| known == place) {

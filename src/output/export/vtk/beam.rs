@@ -63,7 +63,8 @@ pub(super) fn surface<'a>(
     let vector = |axial: &str, transverse: &str| -> Vec<f64> {
         let both = each(axial).into_iter().zip(each(transverse));
         let (sin, cos) = turn.sin_cos();
-        both.flat_map(|(a, t)| [a * cos - t * sin, t * cos + a * sin, 0.0]).collect()
+        both.flat_map(|(a, t)| [a * cos - t * sin, t * cos + a * sin, 0.0])
+            .collect()
     };
     out.of_points = vec![
         Data::vector("u_m", vector("u3_m", "u1_m")),

@@ -82,7 +82,12 @@ impl Cutout {
     pub fn stations(&self, nodes: &[f64]) -> Vec<f64> {
         // An edge that differs from a node only by round-off is that node.
         let apart = 1e-9 * self.length;
-        let edges = self.windows.iter().filter(|window| window[0] < window[1]).flatten().copied();
+        let edges = self
+            .windows
+            .iter()
+            .filter(|window| window[0] < window[1])
+            .flatten()
+            .copied();
         let mut all: Vec<f64> = nodes.to_vec();
         all.extend(edges.filter(|e| nodes.iter().all(|n| (n - e).abs() > apart)));
         all.sort_by(f64::total_cmp);

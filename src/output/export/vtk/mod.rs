@@ -191,7 +191,13 @@ impl<'a> Scene<'a> {
         for part in &self.parts {
             let own = |name: &str| part.of(name, row(name));
             let angles = own("section_angle_rad");
-            let line = Curve::new(&theta[part.nodes.clone()], own("u1_m"), own("u3_m"), own("curvature_1_m"), angles);
+            let line = Curve::new(
+                &theta[part.nodes.clone()],
+                own("u1_m"),
+                own("u3_m"),
+                own("curvature_1_m"),
+                angles,
+            );
             let (curve, turn) = match part.place {
                 None => (line, 0.0),
                 Some((root, angle, _)) => (line.placed(root, angle), angle),

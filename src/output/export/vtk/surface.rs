@@ -125,8 +125,10 @@ impl Surface {
         }
         self.points.extend(other.points);
         let lines = other.lines.into_iter();
-        self.lines.extend(lines.map(|line| line.into_iter().map(|p| p + first).collect()));
-        self.quads.extend(other.quads.into_iter().map(|quad| quad.map(|p| p + first)));
+        self.lines
+            .extend(lines.map(|line| line.into_iter().map(|p| p + first).collect()));
+        self.quads
+            .extend(other.quads.into_iter().map(|quad| quad.map(|p| p + first)));
         let own = self.of_points.iter_mut().chain(&mut self.of_cells);
         for (own, other) in own.zip(other.of_points.into_iter().chain(other.of_cells)) {
             match (&mut own.values, other.values) {

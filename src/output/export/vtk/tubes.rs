@@ -62,7 +62,11 @@ pub(super) fn all(case: &Case, wet: &Wet, cutouts: &[&Cutout], layout: &CutoutLa
     let tube = |(from, to, kind): &(NetworkNode, NetworkNode, LinkKind)| {
         let ends = [*from, *to];
         let [(first, start), (second, end)] = [place(*from)?, place(*to)?];
-        let line = if first == second { arc(start, end, length) } else { vec![start, end] };
+        let line = if first == second {
+            arc(start, end, length)
+        } else {
+            vec![start, end]
+        };
         Some(TubeArc {
             line,
             parts: [first, second],
@@ -76,12 +80,7 @@ pub(super) fn all(case: &Case, wet: &Wet, cutouts: &[&Cutout], layout: &CutoutLa
 }
 
 /// Place at which a bladder's end meets the beam's side, with its part, and the outermost fluid cell there.
-fn mouth(
-    node: NetworkNode,
-    wet: &Wet,
-    cutouts: &[&Cutout],
-    layout: &CutoutLayout,
-) -> Option<((usize, Place), usize)> {
+fn mouth(node: NetworkNode, wet: &Wet, cutouts: &[&Cutout], layout: &CutoutLayout) -> Option<((usize, Place), usize)> {
     let NetworkNode::Cell { bladder, end } = node else {
         return None;
     };
