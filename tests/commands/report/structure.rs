@@ -56,7 +56,10 @@ fn structures_are_shown_with_all_beams() {
             "{words}"
         );
     }
-    // the film paints in the colour of the solid near the tip of the upright beam
+    // the upright beam reaches into the upper third of the film, of which it covers a part
+    let upper = "(() => { const c = document.querySelector('#motion canvas'); const d = c.getContext('2d').getImageData(0, 0, c.width, Math.floor(c.height / 3)).data; let n = 0; for (let k = 3; k < d.length; k += 4) n += d[k] > 200; return n / (d.length / 4); })()";
+    let covered = browser.number(upper);
+    assert!((0.002..0.2).contains(&covered), "{covered}");
     let equilibrium = made(&dir.path().join("equilibrium"), &["equilibrium", ELL]);
     sound(&mut browser, &equilibrium, &["path", "scene"]);
     let modes = made(&dir.path().join("modes"), &["modes", ELL, "--count", "3"]);
