@@ -47,6 +47,11 @@ pub fn add(scene: &mut Value, case: &Case) {
         let (kind, words) = match &joint.kind {
             JointKind::Rigid(_) => ("rigid", "rigid joint".to_owned()),
             JointKind::Hinge(hinge) => ("hinge", of_hinge(hinge)),
+            JointKind::Elastic(_) => ("elastic", "elastic joint".to_owned()),
+            JointKind::Slider(slider) => {
+                let angle = q(slider.angle_rad, "rad");
+                ("slider", format!("slider, along a slot at {angle} to the first beam"))
+            }
         };
         let body = match joint.mass_kg > 0.0 {
             true => format!(", with a body of {}", q(joint.mass_kg, "kg")),

@@ -31,7 +31,7 @@ fn structures_are_shown_with_all_beams() {
         &["scene", "motion", "profiles", "maps", "histories"],
     );
     // one open circle and one dot, each at both places that meet there
-    let joints = "[...document.querySelectorAll('#scene circle.joint')].map(c => [c.getAttribute('cx'), c.getAttribute('cy')].map(x => Math.round(x)).join())";
+    let joints = "[...document.querySelectorAll('#scene svg.fig circle.joint')].map(c => [c.getAttribute('cx'), c.getAttribute('cy')].map(x => Math.round(x)).join())";
     assert_eq!(browser.number(&format!("{joints}.length")), 4.0);
     assert_eq!(browser.number(&format!("new Set({joints}).size")), 2.0);
     let names = "[...document.querySelectorAll('#scene svg text')].map(t => t.textContent)";

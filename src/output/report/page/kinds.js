@@ -31,7 +31,7 @@ function showScene(describe) {
   const note = el("p", { class: "caption" });
   const card = figure(null, null, host, half ? readout : null, legend, note);
   const parts = half ? ` ${scene.bladders.outlines ? "Outlines" : "Rectangles"} are bladders, which lie across the beam; lines are tubes, which join their ends in front and behind.` : "";
-  const scale = (thicker) => (note.textContent = `${thicker > 1.01 ? `To scale along the beam${scene.beams ? "s" : ""}; its height is drawn ${shortest(thicker)} times larger.` : "To scale."} ${scene.beams ? "z to the right, x up; bladders are numbered along each beam. Dots are rigid joints, open circles hinges." : "Root on the left, tip on the right."}${parts}`);
+  const scale = (thicker) => (note.textContent = `${thicker > 1.01 ? `To scale along the beam${scene.beams ? "s" : ""}; its height is drawn ${shortest(thicker)} times larger.` : "To scale."} ${scene.beams ? "z to the right, x up; bladders are numbered along each beam. Dots are rigid joints, open circles hinges, squares elastic joints and sliders." : "Root on the left, tip on the right."}${parts}`);
   body.append(card);
   const drawing = drawScene(scene, host, readout, describe || ((b, layout) => bladderWords(b, layout, scene)), scale);
   drawn(() => legend.replaceChildren(...sceneWords(scene, drawing.layout).map(([mark, strong, text]) => el("li", {}, mark, el("span", {}, el("b", { text: strong }), ` ${text}`)))));
@@ -85,7 +85,7 @@ function sceneWords(scene, layout) {
   });
   const circle = swatch(svg("circle", { cx: 13, cy: 7, r: 5.5, style: `fill:none;stroke:${css("--faint")};stroke-width:3` }));
   for (const one of scene.obstacles || []) out.push(one.center ? [circle.cloneNode(true), "Circle", one.words] : [wall.cloneNode(true), "Wall", one.words]);
-  for (const joint of scene.joints || []) out.push([swatch(svg("circle", { cx: 13, cy: 7, r: 4.5, style: `fill:${css(joint.kind === "hinge" ? "--card" : "--ink")};stroke:${css("--ink")};stroke-width:2` })), "Joint", joint.words]);
+  for (const joint of scene.joints || []) out.push([swatch(jointMark(joint, 13, 7, 4.5)), "Joint", joint.words]);
   for (const load of scene.loads) out.push([push.cloneNode(true), "Load", load.words]);
   for (const beam of scene.beams || []) for (const load of beam.loads) out.push([push.cloneNode(true), `Load on ${beam.name}`, load.words]);
   return out;

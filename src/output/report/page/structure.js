@@ -77,6 +77,22 @@ function jointPlaces(scene, joint) {
   return joint.at.map((at) => at.along + (at.tip ? -1 : 1) * 1e-6 * scene.length);
 }
 
+/** True for joints drawn as squares: elastic ones and sliders. */
+function isElastic(joint) {
+  return joint.kind === "elastic" || joint.kind === "slider";
+}
+
+function jointFill(joint) {
+  return css(joint.kind === "rigid" ? "--ink" : "--card");
+}
+
+/** A dot for a rigid joint, an open circle for a hinge, an open square for others. */
+function jointMark(joint, x, y, size) {
+  const style = `fill:${jointFill(joint)};stroke:${css("--ink")};stroke-width:2`;
+  if (isElastic(joint)) return svg("rect", { class: "joint", x: x - size, y: y - size, width: 2 * size, height: 2 * size, style });
+  return svg("circle", { class: "joint", cx: x, cy: y, r: size, style });
+}
+
 /** Joints and pinned ends of a structure over its beams. */
 function paintJoints(ctx, view, curve, scene, half) {
   const at = [0, 0];
@@ -109,8 +125,9 @@ function paintJoints(ctx, view, curve, scene, half) {
     }
     for (const [x, y] of places) {
       ctx.beginPath();
-      ctx.arc(x, y, 4, 0, 2 * Math.PI);
-      ctx.fillStyle = css(joint.kind === "hinge" ? "--card" : "--ink");
+      if (isElastic(joint)) ctx.rect(x - 4, y - 4, 8, 8);
+      else ctx.arc(x, y, 4, 0, 2 * Math.PI);
+      ctx.fillStyle = jointFill(joint);
       ctx.fill();
       ctx.stroke();
     }
@@ -168,7 +185,7 @@ function structureDrawing(scene, layout, width, chosen) {
   for (const joint of scene.joints) {
     const places = jointPlaces(scene, joint).map((a) => screen(a, 0));
     for (const [x, y] of places) add(svg("path", { d: `M${places[0].join(" ")}L${x} ${y}`, style: `stroke:${css("--ink")};stroke-width:2` }));
-    for (const [cx, cy] of places) add(svg("circle", { class: "joint", cx, cy, r: 5, style: `fill:${css(joint.kind === "hinge" ? "--card" : "--ink")};stroke:${css("--ink")};stroke-width:2` }));
+    for (const [x, y] of places) add(jointMark(joint, x, y, 5));
   }
   for (const { beam } of groups) {
     const [x, y] = screen(beam.from + beam.length / 2, 0);
