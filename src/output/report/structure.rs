@@ -28,9 +28,10 @@ pub fn add(scene: &mut Value, case: &Case) {
         end(&given.unwrap_or(&free).resolve(), form, end_s)
     };
     let beams = case.beams.iter().enumerate().map(|(k, beam)| {
-        let [x, z] = beam.origin_m.unwrap_or_default();
+        let first = pieces.iter().find(|piece| piece.beam == k);
+        let (origin, angle) = first.map_or_else(Default::default, |piece| (piece.origin, piece.angle));
         json!({
-            "name": beam.name, "from": from(k), "length": lengths[k], "x": x, "z": z, "angle": beam.angle_rad,
+            "name": beam.name, "from": from(k), "length": lengths[k], "x": origin.x, "z": origin.z, "angle": angle,
             "ends": [condition(k, 0), condition(k, 1)],
             "loads": beam.loads.iter().map(|one| load(one, end_s)).collect::<Vec<_>>(),
         })

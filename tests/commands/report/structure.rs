@@ -62,6 +62,15 @@ fn structures_are_shown_with_all_beams() {
     assert!((0.002..0.2).contains(&covered), "{covered}");
     let equilibrium = made(&dir.path().join("equilibrium"), &["equilibrium", ELL]);
     sound(&mut browser, &equilibrium, &["path", "scene"]);
+    let short = [
+        "/time/end_s=0.02",
+        "/time/output_interval_s=0.002",
+        "/time/window_s=0.01",
+    ];
+    let sets = short.iter().flat_map(|set| ["--set", set]);
+    let gripper: Vec<&str> = ["run", "cases/gripper.json"].into_iter().chain(sets).collect();
+    let gripper = made(&dir.path().join("gripper"), &gripper);
+    sound(&mut browser, &gripper, &["scene", "motion", "profiles", "maps"]);
     let modes = made(&dir.path().join("modes"), &["modes", ELL, "--count", "3"]);
     sound(&mut browser, &modes, &["shapes", "scene"]);
 }

@@ -85,7 +85,7 @@ function sceneWords(scene, layout) {
   });
   const circle = swatch(svg("circle", { cx: 13, cy: 7, r: 5.5, style: `fill:none;stroke:${css("--faint")};stroke-width:3` }));
   for (const one of scene.obstacles || []) out.push(one.center ? [circle.cloneNode(true), "Circle", one.words] : [wall.cloneNode(true), "Wall", one.words]);
-  for (const joint of scene.joints || []) out.push([swatch(jointMark(joint, 13, 7, 4.5)), "Joint", joint.words]);
+  for (const joint of (scene.joints || []).slice(0, 16)) out.push([swatch(jointMark(joint, 13, 7, 4.5)), "Joint", joint.words]);
   for (const load of scene.loads) out.push([push.cloneNode(true), "Load", load.words]);
   for (const beam of scene.beams || []) for (const load of beam.loads) out.push([push.cloneNode(true), `Load on ${beam.name}`, load.words]);
   return out;

@@ -26,6 +26,7 @@ function layOut(scene) {
   });
   if (rows.length) out.size = [Math.max(...rows.map((r) => r.size[0])), Math.max(...rows.map((r) => r.size[1]))];
   const number = (a) => (scene.beams ? beamAt(scene, a) : 0);
+  const apartBeams = (A, B) => number(A.a) !== number(B.a);
   const first = (j) => (scene.beams ? borders.findIndex((border) => number(border + 1e-9 * scene.length) === number((borders[j] + borders[j + 1]) / 2)) : 0);
   for (let b = 0; b < 2 * perRow; b++) {
     const row = b < perRow ? 1 : -1;
@@ -60,7 +61,6 @@ function layOut(scene) {
     return { a: bladder.a + side * 0.24 * bladder.size[0], e: bladder.e };
   };
   const name = (b) => labelText(out.bladders[b].label);
-  const apartBeams = (A, B) => number(A.a) !== number(B.a);
   chains.forEach((chain, c) => {
     const colour = out.colourOf(network[chain.bladders[0]]);
     chain.bladders.forEach((b, k) => {
