@@ -18,7 +18,7 @@ pub fn add(scene: &mut Value, case: &Case) {
     let from = |beam: usize| lengths[..beam].iter().sum::<f64>() + 0.0;
     let joined = |beam: usize, at_tip: bool| {
         let own = |k: &usize| pieces[k / 2].beam == beam && (k % 2 == 1) == at_tip && pieces[k / 2].at_end[k % 2];
-        joints.iter().flatten().flat_map(Place::ends).any(|k| own(k))
+        joints.iter().flatten().flat_map(Place::ends).any(own)
     };
     let condition = |beam: usize, k: usize| {
         let given = case.beams[beam].ends.both()[k];
