@@ -9,7 +9,7 @@ use super::arguments::{CaseArguments, ResultArguments};
 use super::response::check_band;
 use super::{resources, terminal};
 use crate::error::numbers::{counted, error_percent};
-use crate::error::{Code, Error, Result};
+use crate::error::{Code, Result};
 use crate::output::band_structure as files;
 use crate::output::kind::FolderKind;
 use crate::output::report;
@@ -53,11 +53,7 @@ pub fn bands(asked: &BandsArguments) -> Result<ExitCode> {
     let band = [asked.from, asked.to];
     check_band(band, asked.points, asked.from < asked.to, "below")?;
     let case = resources::load(&asked.case)?;
-    if case.is_structure() {
-        let what = "bands: waves run along one straight beam of equal cells, and the case is a structure of several. Use `slcbeam bands` \
-                    on a case with one of its beams, or `slcbeam modes` on this one";
-        return Err(Error::Usage(what.into()));
-    }
+    case.single("bands")?;
     // a beam without a repeating cell is reported before a folder is created
     let lattice = Lattice::new(&case)?;
     let mut folder = asked.result.place.claim(&case, FolderKind::Bands)?;

@@ -17,13 +17,8 @@ use crate::run::equilibrium::{self, EquilibriumOptions, KnownEquilibrium, Parame
 /// Adds a probe in the middle of each pair of bladders. Returns the case and the names of the pressure columns, upper row first.
 ///
 /// # Errors
-/// [`Error::Usage`] if the case has no bladders with fluid, or is a structure.
+/// [`Error::Usage`] if the case has no bladders with fluid.
 pub fn probed(case: &Case) -> Result<(Case, Vec<String>)> {
-    if case.is_structure() {
-        return Err(Error::Usage(
-            "loads are estimated along one beam, and the case is a structure of several; use a case with one of its beams".into(),
-        ));
-    }
     let per_row = match &case.bladders {
         Some(bladders) if case.fluid.is_some() => bladders.per_row,
         _ => {
