@@ -36,7 +36,7 @@ pub fn existing(case: &Case) -> String {
             }
         }
         let labels = BladderLabels::from_case(case);
-        let label = |index| labels.of(index);
+        let label = |index| labels.label(index);
         let ranges = ranges.into_iter().map(|[first, last]| match first == last {
             true => label(first).to_string(),
             false => format!("{} to {}", label(first), label(last)),

@@ -133,7 +133,7 @@ impl<'a> Wiring<'a> {
     /// Name of a point: `inlet of bladder -3`, or that of the junction.
     pub fn label(&self, point: WiringPoint) -> String {
         match point {
-            WiringPoint::Bladder(bladder, end) => format!("{end} of bladder {}", self.labels.of(bladder)),
+            WiringPoint::Bladder(bladder, end) => format!("{end} of bladder {}", self.labels.label(bladder)),
             WiringPoint::Junction(j) => self.junctions[j].clone(),
         }
     }
@@ -201,7 +201,7 @@ impl BladderLabels {
     }
 
     /// Label of a bladder index `0..n`, upper row first.
-    pub fn of(&self, index: usize) -> String {
+    pub fn label(&self, index: usize) -> String {
         self.of_number(bladder_label(index, self.per_row))
     }
 

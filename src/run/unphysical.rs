@@ -71,7 +71,7 @@ impl Unphysical {
 
     fn place(&self, (in_bladder, place): (bool, usize)) -> String {
         if in_bladder && self.labels.per_row > 0 {
-            return format!("bladder {}", self.labels.of(place));
+            return format!("bladder {}", self.labels.label(place));
         }
         self.places.get(place).cloned().unwrap_or_else(|| "the network".into())
     }

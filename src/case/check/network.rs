@@ -96,7 +96,7 @@ impl<'a> Rules<'a, '_> {
 
     fn describe(&self, point: WiringPoint) -> String {
         match point {
-            WiringPoint::Bladder(index, end) => format!("the {end} of bladder {}", self.labels.of(index)),
+            WiringPoint::Bladder(index, end) => format!("the {end} of bladder {}", self.labels.label(index)),
             WiringPoint::Junction(j) => format!("junction \"{}\"", self.network.junctions[j]),
         }
     }

@@ -172,7 +172,7 @@ impl Layout {
 
     /// Name of an unknown, with unit and place.
     pub fn name(&self, unknown: usize) -> String {
-        let bladder = |b: usize| self.labels.of(b);
+        let bladder = |b: usize| self.labels.label(b);
         match self.names[unknown] {
             Name::Node(what, node) => format!("{what} of node {node}"),
             Name::Joint(what, joint) => format!("{what} of joint {}", joint + 1),

@@ -137,7 +137,7 @@ fn tubes(fluid: &FluidMesh) -> impl Iterator<Item = (usize, usize)> + '_ {
 /// Mean pressure of every bladder; only for states at rest, because runs record pressures as fields.
 fn bladders(labels: &BladderLabels) -> impl Iterator<Item = HistoryColumn> {
     (0..2 * labels.per_row).map(move |bladder| {
-        let label = labels.of(bladder);
+        let label = labels.label(bladder);
         HistoryColumn {
             name: format!("{}_pressure", begin("bladder", &label)),
             unit: "Pa",

@@ -73,7 +73,7 @@ pub fn add(scene: &mut Value, case: &Case) {
     .into();
     if scene["bladders"].is_object() {
         let labels = BladderLabels::from_case(case);
-        scene["bladders"]["labels"] = (0..2 * labels.per_row).map(|b| labels.of(b)).collect();
+        scene["bladders"]["labels"] = (0..2 * labels.per_row).map(|b| labels.label(b)).collect();
     }
 }
 

@@ -158,7 +158,7 @@ impl ScenePart {
     }
 
     /// Values of a recorded field on the part.
-    fn of<'a>(&self, name: &str, row: &'a [f64]) -> &'a [f64] {
+    fn values<'a>(&self, name: &str, row: &'a [f64]) -> &'a [f64] {
         let range = match BeamField::named(name).map(BeamField::axis) {
             Some(FieldAxis::Cells) => &self.cells,
             _ => &self.nodes,
@@ -189,7 +189,7 @@ impl<'a> Scene<'a> {
         let (pressure, area) = (row("pressure_pa"), row("area_change_m2"));
         let (mut beams, mut boxes, mut curves) = (Surface::default(), Surface::default(), vec![]);
         for part in &self.parts {
-            let own = |name: &str| part.of(name, row(name));
+            let own = |name: &str| part.values(name, row(name));
             let angles = own("section_angle_rad");
             let line = Curve::new(
                 &theta[part.nodes.clone()],
