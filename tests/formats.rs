@@ -76,6 +76,7 @@ fn what_is_written_has_the_shape_of_its_format() {
         case_name: case.name.clone(),
         case: case.written(),
         frequency_hz: None,
+        bladders: Default::default(),
     };
     // Stopped, so that the checkpoint stays.
     let hook = |progress: &slcbeam::run::record::Progress| match progress.t > 0.035 {

@@ -2,7 +2,7 @@
 
 use super::schema::Case;
 use super::spans;
-use super::wiring::{bladder_index, bladder_label};
+use super::wiring::{BladderLabels, bladder_index};
 
 /// Cause and remedy of a bladder that a case with such a segment does not have; none if there is no such segment.
 pub fn absence(case: &Case, number: i64) -> Option<(String, String)> {
@@ -35,7 +35,8 @@ pub fn existing(case: &Case) -> String {
                 None => ranges.push([index, index]),
             }
         }
-        let label = |index| bladder_label(index, per_row);
+        let labels = BladderLabels::from_case(case);
+        let label = |index| labels.label(index);
         let ranges = ranges.into_iter().map(|[first, last]| match first == last {
             true => label(first).to_string(),
             false => format!("{} to {}", label(first), label(last)),
@@ -51,8 +52,9 @@ pub fn existing(case: &Case) -> String {
 /// Sentences about a bladder that a case does not have.
 pub fn missing(case: &Case, number: i64) -> String {
     let cause = absence(case, number).map_or(String::new(), |(cause, _)| format!(": {cause}"));
+    let label = BladderLabels::from_case(case).of_number(number);
     format!(
-        "there is no bladder {number}{cause}. The case has bladders {}",
+        "there is no bladder {label}{cause}. The case has bladders {}",
         existing(case)
     )
 }

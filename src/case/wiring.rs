@@ -87,8 +87,8 @@ pub struct WiringPort<'a> {
 /// A resolved network; empty for a case without one, whose bladders are sealed singly.
 #[derive(Clone, Debug, Default)]
 pub struct Wiring<'a> {
-    /// Bladders in a row.
-    pub per_row: usize,
+    /// Labels of the bladders.
+    pub labels: BladderLabels,
     /// Names of the junctions.
     pub junctions: &'a [String],
     /// Heights of junctions.
@@ -133,7 +133,7 @@ impl<'a> Wiring<'a> {
     /// Name of a point: `inlet of bladder -3`, or that of the junction.
     pub fn label(&self, point: WiringPoint) -> String {
         match point {
-            WiringPoint::Bladder(bladder, end) => format!("{end} of bladder {}", bladder_label(bladder, self.per_row)),
+            WiringPoint::Bladder(bladder, end) => format!("{end} of bladder {}", self.labels.label(bladder)),
             WiringPoint::Junction(j) => self.junctions[j].clone(),
         }
     }
@@ -154,5 +154,63 @@ pub fn bladder_label(index: usize, per_row: usize) -> i64 {
         index as i64 + 1
     } else {
         -((index - per_row) as i64 + 1)
+    }
+}
+
+/// Labels of bladders in texts: `3` and `-3`, in a structure `left:3` and `left:-3`, counted along each beam.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct BladderLabels {
+    /// Bladders in a row.
+    pub per_row: usize,
+    /// Name of each beam of a structure, and the number behind its last segment among those of all beams.
+    beams: Vec<(String, usize)>,
+}
+
+impl BladderLabels {
+    /// Labels of a case.
+    pub fn from_case(case: &Case) -> Self {
+        let beams = case.beams.iter();
+        let per_row = case.bladders.as_ref().map_or(0, |bladders| bladders.per_row);
+        Self::new(
+            per_row,
+            beams.map(|beam| (beam.name.clone(), beam.segments.unwrap_or(1))),
+        )
+    }
+
+    /// Labels for a number of bladders in a row, and for the names and numbers of segments of the beams of a structure.
+    pub fn new(per_row: usize, beams: impl Iterator<Item = (String, usize)>) -> Self {
+        let mut behind = 0;
+        let beams = beams.map(|(name, segments)| {
+            behind += segments;
+            (name, behind)
+        });
+        let beams = beams.collect();
+        Self { per_row, beams }
+    }
+
+    /// Names of the beams of a structure.
+    pub fn beams(&self) -> impl ExactSizeIterator<Item = &str> {
+        self.beams.iter().map(|(name, _)| name.as_str())
+    }
+
+    /// Beam of a segment in a structure, from 0, and the number of the segment there, from 0.
+    pub fn in_beam(&self, segment: usize) -> Option<(usize, usize)> {
+        let beam = self.beams.iter().position(|(_, behind)| segment < *behind)?;
+        let first = if beam > 0 { self.beams[beam - 1].1 } else { 0 };
+        Some((beam, segment - first))
+    }
+
+    /// Label of a bladder index `0..n`, upper row first.
+    pub fn label(&self, index: usize) -> String {
+        self.of_number(bladder_label(index, self.per_row))
+    }
+
+    /// Label of a bladder `R j`; of one that does not exist, its number.
+    pub fn of_number(&self, number: i64) -> String {
+        let segment = (number.unsigned_abs() as usize).checked_sub(1);
+        match segment.and_then(|segment| self.in_beam(segment)) {
+            Some((beam, own)) => format!("{}:{}", self.beams[beam].0, number.signum() * (own as i64 + 1)),
+            None => number.to_string(),
+        }
     }
 }

@@ -60,6 +60,11 @@ pub fn hint(pointer: &str, value: &Value, schema: &Value, branches: &[&Value]) -
                 return Some(format!("write {word}, without quotes"));
             }
         }
+        Value::String(text) if kinds("integer") && text.contains(':') => {
+            return Some(format!(
+                "{text} is not a bladder: write NAME:3 with the name of a beam in /beams and one of its segments, -3 for the lower row"
+            ));
+        }
         Value::Array(items) if kinds("number") => {
             if let [one] = &items[..]
                 && one.is_number()

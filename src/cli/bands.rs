@@ -53,6 +53,7 @@ pub fn bands(asked: &BandsArguments) -> Result<ExitCode> {
     let band = [asked.from, asked.to];
     check_band(band, asked.points, asked.from < asked.to, "below")?;
     let case = resources::load(&asked.case)?;
+    case.single("bands")?;
     // a beam without a repeating cell is reported before a folder is created
     let lattice = Lattice::new(&case)?;
     let mut folder = asked.result.place.claim(&case, FolderKind::Bands)?;

@@ -18,6 +18,7 @@ pub fn mapping(asked: &MappingArguments) -> Result<ExitCode> {
     let Some(wet) = model.wet.as_ref().filter(|wet| wet.per_row > 0) else {
         return Err(Error::Usage("the case has no bladders: there is nothing to map".into()));
     };
+    case.single("mapping")?;
     if !case.spans.is_empty() {
         let what = "the tables map equal segments with equal bladders: they are not available with /spans";
         return Err(Error::Usage(what.into()));

@@ -97,6 +97,7 @@ fn one(asked: &PeriodicArguments) -> Result<ExitCode> {
         case_name: case.name.clone(),
         case: case.written(),
         frequency_hz: Some(1.0 / scene.drive.period),
+        ..Labels::from_case(case)
     };
     let mut recorder = FolderRecorder::new(result, labels, Box::new(|_| Control::Continue));
     let mut outcome = match parameters.is_empty() {

@@ -2,6 +2,7 @@
 
 use nalgebra::Complex;
 
+use crate::discrete::quantities::{FieldAxis, PlacedNodes};
 use crate::error::Result;
 use crate::results::response::{ResponseShape, ResponseShapes};
 use crate::run::modes::ModeShape;
@@ -39,11 +40,11 @@ pub fn shapes(found: &BandResponse, frequencies: &[f64]) -> Result<Option<Respon
         })
     };
     let at: Vec<ResponseShape> = all.iter().zip(computed).filter_map(shape).collect();
-    let mesh = &found.response.about.system().mesh;
-    let theta_m = (0..mesh.nodes)
-        .map(|node| rounded(mesh.node_coordinate(node)))
-        .collect();
-    Ok((!at.is_empty()).then_some(ResponseShapes { theta_m, at }))
+    let system = found.response.about.system();
+    let theta_m = FieldAxis::Nodes.values(system, 0.0).into_iter().map(rounded).collect();
+    let beam = PlacedNodes::new(system).map_or_else(Vec::new, |placed| placed.beam);
+    let beam = beam.into_iter().map(|beam| beam + 1).collect();
+    Ok((!at.is_empty()).then_some(ResponseShapes { theta_m, beam, at }))
 }
 
 /// A number with six digits.

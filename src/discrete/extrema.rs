@@ -101,14 +101,14 @@ impl MonitoredValues {
     pub fn new(system: &System, now: &TimeData, t: f64, w: CompleteState) -> Self {
         let w = &*w;
         let mut g = Self { t, ..Self::default() };
-        let beam = &system.mesh.beams[0];
-        let last = beam.nodes.end - 1;
+        let beam = system.first_tip();
+        let last = system.mesh.beams[beam].nodes.end - 1;
         let mut set = |which: MonitoredQuantity, moving: Moving| g.moving[which as usize] = moving;
         set(MonitoredQuantity::Tip1, [w.motion.u[last].x, w.motion.v[last].x]);
         set(MonitoredQuantity::Tip3, [w.motion.u[last].z, w.motion.v[last].z]);
         set(
             MonitoredQuantity::Angle,
-            [tip_angle(system, now, w, 0), tip_angle_rate(system, now, w)],
+            [tip_angle(system, now, w, beam), tip_angle_rate(system, now, w)],
         );
         let (a, b) = (last / 2, last.div_ceil(2));
         set(
@@ -265,15 +265,17 @@ fn bent(system: &System, now: &TimeData, w: &Workspace<f64>) -> (f64, usize) {
 
 /// Rate of the tip's angle [rad/s], from its last cell and half a cell of the end's curvature.
 fn tip_angle_rate(system: &System, now: &TimeData, w: &Workspace<f64>) -> f64 {
-    let tip = system.mesh.beams[0].ends()[1];
+    let beam = system.first_tip();
+    let tip = system.mesh.beams[beam].ends()[1];
+    let end = &now.ends[2 * beam + 1];
     let last = tip.node;
     if system.model.kinematics == Kinematics::Bar {
         return 0.0;
     }
-    let curvature_rate = match now.ends[1].turns() {
+    let curvature_rate = match end.turns() {
         true => w.shape.kappa_rate[last],
         false => {
-            let given = now.ends[1].moment.rate / system.sections.bending[last];
+            let given = end.moment.rate / system.sections.bending[last];
             let bent = relative_stiffness(system, now, w, last);
             let alpha_rate = given + bent * now.rest_curvature_rate(last);
             relaxation::curvature_rate(system, now, w, last, alpha_rate, bent)

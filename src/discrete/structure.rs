@@ -93,7 +93,14 @@ impl BeamParts {
             let portion = [beam.piece.from, beam.piece.length].map(|length| length / beam.whole);
             let mesh = BeamMesh::new(own.length, lengths, beam.case.mesh.cells_per_segment);
             let jumps = smooth_parts::jumps(&beam.case, &own, &mesh.segment_lengths);
-            Self::on_mesh(&beam.case, &own, mesh.divided(&jumps).of_order(2).portion(portion))
+            let mut parts = Self::on_mesh(&beam.case, &own, mesh.divided(&jumps).of_order(2).portion(portion));
+            let along = |share: f64| portion[0] + share * portion[1];
+            parts.probes.iter_mut().for_each(|probe| probe.at = along(probe.at));
+            if beam.piece.at_end[1] {
+                let tip = MeshProbe::at_tip(&beam.name, &parts.mesh, &parts.sections);
+                parts.probes.push(tip);
+            }
+            parts
         };
         let each: Vec<Self> = structure.beams.iter().map(one).collect();
         let all = each.iter().map(|one| one.mesh.nodes).sum();
@@ -143,6 +150,29 @@ impl BeamParts {
 }
 
 impl System {
+    /// Position of a node of the straight beam or structure in the axes of the case [m].
+    pub fn rest_position(&self, node: usize) -> Planar<f64> {
+        let own = Planar {
+            x: 0.0,
+            z: self.mesh.node_coordinate(node),
+        };
+        match &self.model.structure {
+            None => own,
+            Some(structure) => {
+                structure.beams[self.mesh.beam_of_node(node)].piece.origin + self.in_axes_of_case(node, own)
+            }
+        }
+    }
+
+    /// Part of the mesh whose tip is that of the beam, in a structure that of its first beam.
+    pub fn first_tip(&self) -> usize {
+        let structure = self.model.structure.as_ref();
+        structure.map_or(0, |structure| {
+            let tip = structure.beams.iter().position(|beam| beam.piece.at_end[1]);
+            tip.unwrap_or(0)
+        })
+    }
+
     /// Position of a node in the axes of the case [m].
     pub fn position(&self, w: &Workspace<f64>, node: usize) -> Planar<f64> {
         self.place(&w.motion.u, node)
@@ -150,18 +180,7 @@ impl System {
 
     /// Position of a node in the axes of the case [m], from the displacements of all nodes.
     pub fn place<T: Scalar>(&self, u: &[Planar<T>], node: usize) -> Planar<T> {
-        let along = Planar::constant(Planar {
-            x: 0.0,
-            z: self.mesh.node_coordinate(node),
-        });
-        let own = along + u[node];
-        match &self.model.structure {
-            None => own,
-            Some(structure) => {
-                Planar::constant(structure.beams[self.mesh.beam_of_node(node)].piece.origin)
-                    + self.in_axes_of_case(node, own)
-            }
-        }
+        Planar::constant(self.rest_position(node)) + self.in_axes_of_case(node, u[node])
     }
 
     /// A vector at a node along the axes of the case, from that along the axes of its beam.

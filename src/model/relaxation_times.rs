@@ -4,7 +4,6 @@ use nalgebra::DMatrix;
 
 use super::Wet;
 use super::network::{Component, Link, NetworkNode, ResolvedNetwork};
-use crate::case::wiring::bladder_label;
 use crate::functions::signals::SmoothTime;
 
 /// `[E20]` Slowest relaxation time of each network component [s], with one volume per bladder. `None` for a single
@@ -37,7 +36,7 @@ impl Slowest {
         let open = links.filter_map(|link| Some((conductance(wet, link, t), link)).filter(|(g, _)| *g > 0.0));
         let (_, tightest) = open.min_by(|a, b| a.0.total_cmp(&b.0))?;
         let name = |node: NetworkNode| match node {
-            NetworkNode::Cell { bladder, end } => format!("{end} of bladder {}", bladder_label(bladder, wet.per_row)),
+            NetworkNode::Cell { bladder, end } => format!("{end} of bladder {}", wet.labels.label(bladder)),
             NetworkNode::Junction(j) => wet.network.junctions[j].clone(),
             NetworkNode::Port(port) => wet.network.ports[port].name.clone(),
         };

@@ -6,6 +6,7 @@ use super::{
 };
 use crate::case::schema::{Bladders, Case, Effect};
 use crate::case::spans::{self, SegmentValues};
+use crate::case::wiring::BladderLabels;
 use crate::numerics::Scalar;
 
 /// Laws of the bladders of one segment.
@@ -53,6 +54,8 @@ impl SegmentLaw {
 pub struct Wet {
     /// Bladders in a row, `n/2`.
     pub per_row: usize,
+    /// Labels of the bladders in texts.
+    pub labels: BladderLabels,
     /// Length `l_b` of a bladder [m].
     pub bladder_length: f64,
     /// Area changes of the cells of an upper and of a lower bladder; slopes of omitted effects are zero.
@@ -293,6 +296,7 @@ impl Wet {
         let segments = segments.collect();
         Self {
             per_row: bladders.per_row,
+            labels: BladderLabels::from_case(case),
             bladder_length: bladders.length_m,
             area,
             per_other_pressure: bladders.area_per_other_pressure_m2_per_pa,

@@ -3,8 +3,9 @@
 use super::arrays::ArraysWriter;
 use super::envelope::Envelope;
 use super::plot::{self, Deflection, PlottedCurve, Pressure};
+use crate::case::wiring::BladderLabels;
 use crate::case::{Case, CaseText};
-use crate::discrete::quantities::{BeamField, FieldAxis, Observable};
+use crate::discrete::quantities::{BeamField, FieldAxis, Observable, PlacedNodes};
 use crate::error::Result;
 use crate::model::characteristic;
 use crate::study::companion::band::ErrorBand;
@@ -23,6 +24,8 @@ pub struct Labels {
     pub case: CaseText,
     /// Frequency of the drive [Hz]; pictures over space then show its last cycle.
     pub frequency_hz: Option<f64>,
+    /// Labels of beams and bladders.
+    pub bladders: BladderLabels,
 }
 
 impl Labels {
@@ -32,6 +35,7 @@ impl Labels {
             case_name: case.name.clone(),
             case: case.written(),
             frequency_hz: characteristic::forcing_period(case).map(|period| 1.0 / period),
+            bladders: BladderLabels::from_case(case),
         }
     }
 }
@@ -62,12 +66,13 @@ pub fn over_time(case: &str, history: &Envelope, band: &ErrorBand) -> Vec<NamedS
 }
 
 /// `deflection.svg` and `pressure.svg` over the last cycle of the drive, or over the whole run without one.
-pub fn over_space(case: &str, frequency_hz: Option<f64>, arrays: &ArraysWriter) -> Result<Vec<NamedSvg>> {
-    let all = arrays.times()?;
-    let (span, instants) = plot::instants(&all, frequency_hz, CURVES);
+pub fn over_space(labels: &Labels, arrays: &ArraysWriter) -> Result<Vec<NamedSvg>> {
+    let (all, case) = (arrays.times()?, &labels.case_name);
+    let (span, instants) = plot::instants(&all, labels.frequency_hz, CURVES);
     let times: Vec<f64> = instants.iter().map(|&i| all[i]).collect();
     let axis = |axis: FieldAxis| arrays.axis(axis.name()).map(<[f64]>::to_vec).unwrap_or_default();
-    let integers = |x: Vec<f64>| x.into_iter().map(|x| x.round() as i64).collect();
+    let integers = |x: Vec<f64>| -> Vec<i64> { x.into_iter().map(|x| x.round() as i64).collect() };
+    let placed = PlacedNodes::from_axes(|axis| arrays.axis(axis.name()).map(<[f64]>::to_vec));
     let deflection = Deflection {
         case: case.to_string(),
         span,
@@ -75,13 +80,17 @@ pub fn over_space(case: &str, frequency_hz: Option<f64>, arrays: &ArraysWriter) 
         theta: axis(FieldAxis::Nodes),
         u1: arrays.read(BeamField::U1.name(), &instants)?.unwrap_or_default(),
         u3: arrays.read(BeamField::U3.name(), &instants)?.unwrap_or_default(),
+        structure: placed.map(|nodes| (nodes, labels.bladders.beams().map(str::to_owned).collect())),
     };
     let pressure = Pressure {
         case: case.to_string(),
         span,
         times,
         x_f: axis(FieldAxis::Network),
-        bladder: integers(axis(FieldAxis::Bladder)),
+        bladder: integers(axis(FieldAxis::Bladder))
+            .into_iter()
+            .map(|number| labels.bladders.of_number(number))
+            .collect(),
         network: integers(axis(FieldAxis::Array)),
         pressure: arrays.read(BeamField::Pressure.name(), &instants)?.unwrap_or_default(),
     };

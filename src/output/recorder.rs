@@ -189,8 +189,8 @@ impl FolderRecorder {
         let (laid, text) = (self.folder.laid(), summary::to_json(&checked));
         let [fields, summary] = [FIELDS, SUMMARY].map(|name| self.folder.path(name));
         spent.files += laps.lap();
-        let (case, dir) = (&self.labels.case_name, self.folder.dir());
-        let frequency = self.labels.frequency_hz;
+        let (labels, dir) = (&self.labels, self.folder.dir());
+        let case = &labels.case_name;
         let over_time = || {
             let rows = Envelope::read(HistorySource::new(dir, files.kept.as_ref()), STRETCHES)?;
             Ok(pictures::over_time(case, &rows, &band.unwrap_or_default()))
@@ -200,7 +200,7 @@ impl FolderRecorder {
                 true => vec![],
                 false => vec![
                     begin(scope, over_time),
-                    begin(scope, || pictures::over_space(case, frequency, arrays)),
+                    begin(scope, || pictures::over_space(labels, arrays)),
                 ],
             };
             let put = put(tables, &laid, (arrays, &fields), (&text, &summary));

@@ -159,6 +159,9 @@ impl ResponseCurve {
 pub struct ResponseShapes {
     /// Position of each node along the undeformed beam [m].
     pub theta_m: Vec<f64>,
+    /// Beam of each node in `/beams`, from 1; empty for a single beam.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub beam: Vec<usize>,
     /// Shapes, in ascending order of frequency.
     pub at: Vec<ResponseShape>,
 }

@@ -116,7 +116,7 @@ impl Observer {
             before: None,
             turning: vec![],
             longest_step: f64::INFINITY,
-            readings: StepReadings::new(case),
+            readings: StepReadings::new(case, system),
             valves: ValveFlows::new(case, system),
             seen: Observed {
                 residuals: Residuals::new(system, case.solver.rtol, floors),
@@ -356,6 +356,10 @@ impl Observer {
             let ordered: Vec<Cow<[f64]>> = quantities::BeamField::recorded(system)
                 .map(|field| match field.axis() {
                     quantities::FieldAxis::Network => Cow::Owned(along(&field.values(&w))),
+                    quantities::FieldAxis::Cells if system.model.structure.is_some() => {
+                        let all = field.values(&w);
+                        Cow::Owned(quantities::fields::cells(&system.mesh).map(|c| all[c]).collect())
+                    }
                     _ => field.values(&w),
                 })
                 .collect();

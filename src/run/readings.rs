@@ -36,9 +36,9 @@ pub struct StepReadings {
 
 impl StepReadings {
     /// Creates the readings of a case; nothing is read without probes and step responses.
-    pub fn new(case: &Case) -> Self {
+    pub fn new(case: &Case, system: &System) -> Self {
         Self {
-            follows: !case.probes.is_empty() || case.step_response.is_some(),
+            follows: !system.probes.is_empty() || case.step_response.is_some(),
             ..Self::default()
         }
     }

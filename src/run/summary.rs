@@ -12,6 +12,7 @@ use super::step_response::StepResponse;
 use super::uncertainty_band::Bands;
 pub use super::wall_time::WallTimes;
 use super::waves::GrowingWave;
+use crate::discrete::quantities::probes;
 pub use crate::integrate::Counters;
 
 /// Final status of a run.
@@ -377,5 +378,11 @@ impl Summary {
     /// A quantity, by name and unit.
     pub fn quantity(&self, name: &str) -> Option<&Quantity> {
         self.quantities.get(name)
+    }
+
+    /// Names of the beams of a structure, in alphabetical order.
+    pub fn beams(&self) -> impl Iterator<Item = &str> {
+        let tips = self.probes.keys().filter_map(|name| probes::tip_of_beam(name));
+        tips.filter(|(_, what)| *what == "u1_m").map(|(beam, _)| beam)
     }
 }

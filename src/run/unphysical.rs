@@ -4,7 +4,7 @@
 use serde::{Deserialize, Serialize};
 
 use crate::case::schema::Case;
-use crate::case::wiring::bladder_label;
+use crate::case::wiring::BladderLabels;
 use crate::discrete::System;
 use crate::discrete::extrema::{MonitoredQuantity, MonitoredValues};
 use crate::error::Code;
@@ -25,8 +25,8 @@ pub struct Unphysical {
     boils_below: Option<f64>,
     /// True if this is the vapor pressure; otherwise it is vacuum.
     known: bool,
-    /// Bladders in a row.
-    per_row: usize,
+    /// Labels of the bladders.
+    labels: BladderLabels,
     /// Names of the junctions, followed by those of the ports that prescribe flow or volume.
     places: Vec<String>,
 }
@@ -64,14 +64,14 @@ impl Unphysical {
             length,
             boils_below: fluid.boils_below(),
             known: fluid.vapor_pressure().is_some(),
-            per_row: wet.per_row,
+            labels: wet.labels.clone(),
             places: junctions.chain(sources).collect(),
         }
     }
 
     fn place(&self, (in_bladder, place): (bool, usize)) -> String {
-        if in_bladder && self.per_row > 0 {
-            return format!("bladder {}", bladder_label(place, self.per_row));
+        if in_bladder && self.labels.per_row > 0 {
+            return format!("bladder {}", self.labels.label(place));
         }
         self.places.get(place).cloned().unwrap_or_else(|| "the network".into())
     }

@@ -17,6 +17,7 @@ fn run_into(dir: &Path, text: &str, sets: &[&str]) -> compare::Recording {
         case_name: case.name.clone(),
         case: case.written(),
         frequency_hz: None,
+        bladders: Default::default(),
     };
     let mut recorder = FolderRecorder::new(
         ResultFolder::claim(dir, FolderKind::Run, false).unwrap(),

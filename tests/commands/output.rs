@@ -141,6 +141,7 @@ fn recorder(dir: &Path) -> FolderRecorder {
             tables: vec![],
         },
         frequency_hz: Some(FREQUENCY),
+        bladders: Default::default(),
     };
     let folder = ResultFolder::claim(dir, FolderKind::Run, false).expect("a folder");
     FolderRecorder::new(folder, labels, Box::new(|_| Control::Continue))
@@ -459,6 +460,7 @@ fn the_hook_decides_whether_to_go_on() {
             tables: vec![],
         },
         frequency_hz: None,
+        bladders: Default::default(),
     };
     let stop = Control::Stop("enough".into());
     let answer = stop.clone();
@@ -541,7 +543,7 @@ fn pressure_curves_break_between_networks() {
         span: plot::TimeSpan::WholeRun,
         times: vec![0.0, 1.0],
         network: bladder.iter().map(|b| b.signum()).collect(),
-        bladder,
+        bladder: bladder.iter().map(i64::to_string).collect(),
         pressure: vec![x_f.clone(), vec![0.5; x_f.len()]],
         x_f,
     };

@@ -183,6 +183,7 @@ fn record(folder: &Path, case: &Case, lean: bool, until: f64) {
         case_name: case.name.clone(),
         case: case.written(),
         frequency_hz: None,
+        bladders: Default::default(),
     };
     let hook = Box::new(move |progress: &Progress| match progress.t > until {
         true => Control::Stop("enough".into()),

@@ -1,6 +1,7 @@
 //! `slcbeam export`: what ParaView and spreadsheets are given is what `fields.npz` holds, number for number.
 
 mod piece;
+mod structures;
 mod surfaces;
 
 use std::fs;

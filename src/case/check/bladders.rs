@@ -10,7 +10,7 @@ use crate::case::schema::{
     Beam, Bladders, Case, Coupling, Formulation, LowerRow, ROUNDING, StrainEnergy, TurbineConductance,
 };
 use crate::case::spans;
-use crate::case::wiring::bladder_index;
+use crate::case::wiring::{BladderLabels, bladder_index};
 use crate::error::numbers::counted;
 use crate::error::{Code, Violation};
 
@@ -88,14 +88,15 @@ pub(super) fn existing(number: i64, case: &Case, pointer: &str, faults: &mut Vio
         return None;
     }
     let index = bladder_index(number, per_row);
+    let label = BladderLabels::from_case(case).of_number(number);
     if let Some((cause, hint)) = bladder_numbers::absence(case, number) {
         // one fault for all bladders of a row
-        let fault = Violation::new(Code::Wiring, pointer, format!("there is no bladder {number}: {cause}"));
+        let fault = Violation::new(Code::Wiring, pointer, format!("there is no bladder {label}: {cause}"));
         faults.push_once(&cause, fault.hint(hint));
         return None;
     }
     if index.is_none() {
-        let fault = Violation::new(Code::Wiring, pointer, format!("there is no bladder {number}"));
+        let fault = Violation::new(Code::Wiring, pointer, format!("there is no bladder {label}"));
         faults.push(fault.allowed(bladder_numbers::existing(case)));
     }
     index

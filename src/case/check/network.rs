@@ -9,7 +9,7 @@ use crate::case::faults::Violations;
 use crate::case::numbers::plain;
 use crate::case::schema::{self, BladderEnd, Case, ChainEnd, CheckValve, Endpoint, Network, Rectifier, TubeDefaults};
 use crate::case::wiring::{
-    PermeabilitySource, PortQuantity, Wiring, WiringPoint, WiringPort, WiringTube, bladder_index, bladder_label,
+    BladderLabels, PermeabilitySource, PortQuantity, Wiring, WiringPoint, WiringPort, WiringTube, bladder_index,
 };
 use crate::error::{Code, Violation};
 use crate::functions::signals::Signal;
@@ -47,19 +47,19 @@ pub fn resolve<'a>(case: &'a Case, faults: &mut Violations) -> (Wiring<'a>, Conn
     let Some(network) = &case.network else {
         return Default::default();
     };
-    let per_row = case.bladders.as_ref().map_or(0, |bladders| bladders.per_row);
+    let labels = BladderLabels::from_case(case);
     let mut rules = Rules {
         case,
         network,
         usual: case.tubes.as_ref(),
-        per_row,
+        labels: labels.clone(),
         joined: ConnectionTable::default(),
         faults,
     };
     rules.junction_names();
     junctions::elevations(network, rules.faults);
     let mut wiring = Wiring {
-        per_row,
+        labels,
         junctions: &network.junctions,
         elevations: &network.elevations,
         tubes: rules.tubes(),
@@ -84,7 +84,7 @@ struct Rules<'a, 'f> {
     case: &'a Case,
     network: &'a Network,
     usual: Option<&'a TubeDefaults>,
-    per_row: usize,
+    labels: BladderLabels,
     joined: ConnectionTable<'a>,
     faults: &'f mut Violations,
 }
@@ -96,13 +96,13 @@ impl<'a> Rules<'a, '_> {
 
     fn describe(&self, point: WiringPoint) -> String {
         match point {
-            WiringPoint::Bladder(index, end) => format!("the {end} of bladder {}", bladder_label(index, self.per_row)),
+            WiringPoint::Bladder(index, end) => format!("the {end} of bladder {}", self.labels.label(index)),
             WiringPoint::Junction(j) => format!("junction \"{}\"", self.network.junctions[j]),
         }
     }
 
     fn end_of(&self, number: i64, end: BladderEnd) -> Option<WiringPoint> {
-        bladder_index(number, self.per_row).map(|index| WiringPoint::Bladder(index, end))
+        bladder_index(number, self.labels.per_row).map(|index| WiringPoint::Bladder(index, end))
     }
 
     fn junction_names(&mut self) {
@@ -322,7 +322,8 @@ impl<'a> Rules<'a, '_> {
                 };
                 row.push(index);
                 if let Some(first) = used.get(&index) {
-                    let what = format!("bladder {number} is used twice, first at {first}");
+                    let label = self.labels.of_number(number);
+                    let what = format!("bladder {label} is used twice, first at {first}");
                     let fault = Violation::new(Code::Wiring, pointer, what);
                     self.faults.push(fault.allowed("each bladder in at most one chain"));
                 } else {
@@ -366,10 +367,11 @@ impl<'a> Rules<'a, '_> {
         let at = self.end_of(number, end);
         let owners = at.and_then(|at| self.joined.attached.get(&at));
         let fault = |what| Violation::new(Code::Wiring, format!("/network/chains/{i}/ends/{k}"), what);
+        let label = self.labels.of_number(number);
         let given = match (&chain.ends[k], owners) {
             (ChainEnd::Sealed, Some(owners)) => {
                 let what = format!(
-                    "the {end} of bladder {number} is sealed, but {} is attached there",
+                    "the {end} of bladder {label} is sealed, but {} is attached there",
                     owners[0]
                 );
                 self.faults
@@ -377,7 +379,7 @@ impl<'a> Rules<'a, '_> {
                 return None;
             }
             (ChainEnd::Connected, None) if !self.joined.lost => {
-                let what = format!("nothing is connected to the {end} of bladder {number}");
+                let what = format!("nothing is connected to the {end} of bladder {label}");
                 let hint = "add a tube, port or turbine there, or write \"sealed\"";
                 self.faults.push(fault(what).hint(hint));
                 return None;

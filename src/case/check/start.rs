@@ -9,6 +9,7 @@ use crate::case::ends::{Rotation, Translation};
 use crate::case::faults::Violations;
 use crate::case::locate::child;
 use crate::case::schema::{Case, End};
+use crate::case::wiring::BladderLabels;
 use crate::error::{Code, Violation};
 use crate::functions::profile::Profile;
 use crate::functions::signals::{Signal, SmoothTime};
@@ -32,7 +33,8 @@ fn pressures(case: &Case, faults: &mut Violations) {
             if existing(index, case, &pointer, faults).is_some()
                 && let Some(first) = known.insert(index, pointer.clone())
             {
-                let what = format!("the pressure of bladder {index} is given twice, first at {first}");
+                let label = BladderLabels::from_case(case).of_number(index);
+                let what = format!("the pressure of bladder {label} is given twice, first at {first}");
                 faults.push(Violation::new(Code::Together, pointer, what));
             }
         }

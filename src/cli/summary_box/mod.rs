@@ -19,6 +19,8 @@ use errors::{errors, figure};
 
 /// Largest number of lines of a plain entry. Warnings and reasons of failures are printed in full, because their advice is at the end.
 const LINES: usize = 2;
+/// Largest number of beams of a structure whose tips are shown.
+const BEAMS: usize = 4;
 /// Smallest share of the wall time that is shown.
 const LEAST_SHARE: f64 = 0.005;
 /// Separator of the parts of an entry; it stays on the line of the part before it.
@@ -103,10 +105,22 @@ fn rows(summary: &Summary, tone: Tone) -> Vec<Row> {
         add("warning", Some(warning.into()), Tone::Warning);
     }
     add("", others, Tone::Warning);
-    let [end, largest] = tip(summary);
-    let below = if end.is_some() { "" } else { "tip" };
-    add("tip", end, Tone::Plain);
-    add(below, largest, Tone::Plain);
+    let beams: Vec<&str> = summary.beams().collect();
+    if beams.is_empty() {
+        let [end, largest] = tip(summary, None);
+        let below = if end.is_some() { "" } else { "tip" };
+        add("tip", end, Tone::Plain);
+        add(below, largest, Tone::Plain);
+    }
+    for (k, beam) in beams.iter().take(BEAMS).enumerate() {
+        for (j, text) in tip(summary, Some(beam)).into_iter().enumerate() {
+            add(if k + j == 0 { "tips" } else { "" }, text, Tone::Plain);
+        }
+    }
+    if beams.len() > BEAMS {
+        let more = counted((beams.len() - BEAMS) as u64, "more beam");
+        add("", Some(format!("{more} in summary.json")), Tone::Plain);
+    }
     add("pressure", pressure(summary), Tone::Plain);
     add("step", step(summary), Tone::Plain);
     add("energy", energy(summary), Tone::Plain);
@@ -215,14 +229,24 @@ fn get(summary: &Summary, one: Interest) -> Option<&Quantity> {
     summary.quantities.get(one.name())
 }
 
-/// Position of the tip at the end, and its largest displacement with the time.
-fn tip(summary: &Summary) -> [Option<String>; 2] {
+/// Displacements of the tip at the end, and the largest ones with their times; in a structure of a beam, along its axes.
+fn tip(summary: &Summary, beam: Option<&str>) -> [Option<String>; 2] {
     let joined = |words: &str, text: &dyn Fn(&str, &Quantity) -> Option<String>| {
         let tip = [("u₁", Interest::TipU1), ("u₃", Interest::TipU3)];
-        let one =
-            |(symbol, one): (&str, Interest)| Some(hold(format!("{symbol} {}", text(one.name(), get(summary, one)?)?)));
+        let one = |(symbol, one): (&str, Interest)| {
+            let (name, found) = match beam {
+                None => (one.name().to_owned(), get(summary, one)?),
+                Some(beam) => {
+                    let name = format!("{beam}.{}", one.name());
+                    let found = summary.probes.get(&name)?;
+                    (name, found)
+                }
+            };
+            Some(hold(format!("{symbol} {}", text(&name, found)?)))
+        };
         let parts: Vec<String> = tip.into_iter().filter_map(one).collect();
-        (!parts.is_empty()).then(|| format!("{words}: {}", parts.join(BETWEEN)))
+        let of = beam.map_or(String::new(), |beam| format!("{beam} "));
+        (!parts.is_empty()).then(|| format!("{of}{words}: {}", parts.join(BETWEEN)))
     };
     let last = |name: &str, q: &Quantity| Some(figure(summary, (name, "final"), q.last?, "m"));
     let largest = |name: &str, q: &Quantity| {

@@ -11,7 +11,7 @@ use std::ops::Range;
 use super::joints::MeshJoints;
 use super::{BeamMesh, FluidMesh};
 use crate::case::schema::Effect;
-use crate::case::wiring::bladder_label;
+use crate::case::wiring::BladderLabels;
 use crate::model::Model;
 
 pub use solid::{JointUnknowns, LineLayout, Relaxation, SectionRotation};
@@ -43,7 +43,7 @@ pub struct Layout {
     /// True for each unknown that is differential.
     pub differential: Vec<bool>,
     names: Vec<Name>,
-    per_row: usize,
+    labels: BladderLabels,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -102,7 +102,7 @@ impl Layout {
             row_scales: build.row_scales,
             differential: build.differential,
             names: build.names,
-            per_row: wet.map_or(0, |(wet, _)| wet.per_row),
+            labels: wet.map_or_else(BladderLabels::default, |(wet, _)| wet.labels.clone()),
         }
     }
 
@@ -164,7 +164,7 @@ impl Layout {
             Name::Node(_, place) | Name::Cell(_, place) | Name::Relaxed(_, _, place) => Some(place / cells_per_segment),
             Name::Segment(_, segment) => Some(segment),
             Name::Area(bladder, _) | Name::ExcessArea(bladder) | Name::Face(_, bladder, _) => {
-                Some(bladder % self.per_row)
+                Some(bladder % self.labels.per_row)
             }
             _ => None,
         }
@@ -172,7 +172,7 @@ impl Layout {
 
     /// Name of an unknown, with unit and place.
     pub fn name(&self, unknown: usize) -> String {
-        let bladder = |b: usize| bladder_label(b, self.per_row);
+        let bladder = |b: usize| self.labels.label(b);
         match self.names[unknown] {
             Name::Node(what, node) => format!("{what} of node {node}"),
             Name::Joint(what, joint) => format!("{what} of joint {}", joint + 1),

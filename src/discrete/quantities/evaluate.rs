@@ -31,7 +31,7 @@ impl Extremes {
             high: place(w.fluid.pressures(), 1.0),
             low: place(w.fluid.pressures(), -1.0),
             closed: system.most_closed(w.fluid.area_changes()),
-            angle: tip_angle(system, now, w, 0),
+            angle: tip_angle(system, now, w, system.first_tip()),
         }
     }
 }
@@ -67,7 +67,7 @@ impl<'a> StateView<'a> {
 
 impl StateView<'_> {
     fn tip(&self) -> usize {
-        self.system.mesh.beams[0].nodes.end - 1
+        self.system.mesh.beams[self.system.first_tip()].nodes.end - 1
     }
 
     pub(super) fn tip_u1(&self) -> f64 {
@@ -80,7 +80,10 @@ impl StateView<'_> {
 
     /// Angle of the tip, unwrapped to the fixed reference angle.
     pub(super) fn tip_angle(&self) -> f64 {
-        nearest(tip_angle(self.system, self.now, &self.w, 0), self.at.angle)
+        nearest(
+            tip_angle(self.system, self.now, &self.w, self.system.first_tip()),
+            self.at.angle,
+        )
     }
 
     pub(super) fn max_pressure(&self) -> f64 {

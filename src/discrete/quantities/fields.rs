@@ -4,7 +4,7 @@ use std::borrow::Cow;
 
 use super::observables::QuantityRole;
 use crate::case::wiring::bladder_label;
-use crate::discrete::{System, Workspace};
+use crate::discrete::{BeamMesh, System, Workspace};
 use crate::model::mapping::NetworkCoordinate;
 
 /// Fixed arrays along a line: coordinates and indices.
@@ -20,6 +20,16 @@ pub enum FieldAxis {
     Bladder,
     /// Connected array of each cell of the bladders.
     Array,
+    /// Beam of each node of a structure.
+    BeamOfNode,
+    /// Beam of each cell of a structure.
+    BeamOfCell,
+    /// Position x of the nodes of a structure at rest.
+    RestX,
+    /// Position z of the nodes of a structure at rest.
+    RestZ,
+    /// Direction of the straight beam of each node of a structure.
+    RestAngle,
 }
 
 /// A quantity at every place along a line.
@@ -146,25 +156,61 @@ impl BeamField {
     /// Number of values in a system.
     pub fn len(self, system: &System) -> usize {
         match self.axis() {
-            FieldAxis::Nodes => system.mesh.nodes,
-            FieldAxis::Cells => system.mesh.cells,
+            FieldAxis::Cells | FieldAxis::BeamOfCell => cells(&system.mesh).count(),
             FieldAxis::Network | FieldAxis::Bladder | FieldAxis::Array => {
                 system.fluid.as_ref().map_or(0, |fluid| fluid.cells)
             }
+            _ => system.mesh.nodes,
         }
     }
 }
 
 impl FieldAxis {
-    const ALL: [Self; 5] = [Self::Nodes, Self::Cells, Self::Network, Self::Bladder, Self::Array];
+    const ALL: [Self; 10] = [
+        Self::Nodes,
+        Self::Cells,
+        Self::Network,
+        Self::Bladder,
+        Self::Array,
+        Self::BeamOfNode,
+        Self::BeamOfCell,
+        Self::RestX,
+        Self::RestZ,
+        Self::RestAngle,
+    ];
 
     fn entry(self) -> [&'static str; 3] {
         match self {
-            Self::Nodes => ["theta_node_m", "m", "material coordinate of the nodes"],
-            Self::Cells => ["theta_cell_m", "m", "material coordinate of the cells' midpoints"],
+            Self::Nodes => [
+                "theta_node_m",
+                "m",
+                "material coordinate of the nodes, along their beam",
+            ],
+            Self::Cells => [
+                "theta_cell_m",
+                "m",
+                "material coordinate of the cells' midpoints, along their beam",
+            ],
             Self::Network => ["x_f", "1", "network coordinate of the bladder cells, array by array"],
             Self::Bladder => ["bladder", "1", "bladder index R j of each cell along x_f"],
             Self::Array => ["array", "1", "number of the connected array of each cell along x_f"],
+            Self::BeamOfNode => ["beam_node", "1", "number of the beam of each node in /beams, from 1"],
+            Self::BeamOfCell => ["beam_cell", "1", "number of the beam of each cell in /beams, from 1"],
+            Self::RestX => [
+                "x_node_m",
+                "m",
+                "position x of the nodes of the straight structure, in the axes of the case",
+            ],
+            Self::RestZ => [
+                "z_node_m",
+                "m",
+                "position z of the nodes of the straight structure, in the axes of the case",
+            ],
+            Self::RestAngle => [
+                "angle_node_rad",
+                "rad",
+                "angle from z towards x of the straight beam of each node",
+            ],
         }
     }
 
@@ -185,19 +231,41 @@ impl FieldAxis {
 
     /// Axes of a system.
     pub fn recorded(system: &System) -> impl Iterator<Item = Self> {
-        let wet = system.has_bladders();
-        Self::ALL
-            .into_iter()
-            .filter(move |axis| wet || matches!(axis, Self::Nodes | Self::Cells))
+        let (wet, placed) = (system.has_bladders(), system.model.structure.is_some());
+        Self::ALL.into_iter().filter(move |axis| match axis {
+            Self::Nodes | Self::Cells => true,
+            Self::Network | Self::Bladder | Self::Array => wet,
+            _ => placed,
+        })
+    }
+
+    /// Values in a system along the beams; none for axes along the network.
+    fn along_beams(self, system: &System) -> Option<Vec<f64>> {
+        let mesh = &system.mesh;
+        let nodes = |value: &dyn Fn(usize) -> f64| Some((0..mesh.nodes).map(value).collect());
+        let of_cells = |value: &dyn Fn(usize) -> f64| Some(cells(mesh).map(value).collect());
+        let piece = |node: usize| {
+            let structure = system.model.structure.as_ref();
+            structure.map(|structure| &structure.beams[mesh.beam_of_node(node)].piece)
+        };
+        let from = |node: usize| piece(node).map_or(0.0, |piece| piece.from);
+        let beam = |node: usize| piece(node).map_or(1.0, |piece| piece.beam as f64 + 1.0);
+        match self {
+            Self::Nodes => nodes(&|i| from(i) + mesh.node_coordinate(i)),
+            Self::Cells => of_cells(&|c| from(c) + mesh.cell_coordinate(c)),
+            Self::BeamOfNode => nodes(&beam),
+            Self::BeamOfCell => of_cells(&beam),
+            Self::RestX => nodes(&|i| system.rest_position(i).x),
+            Self::RestZ => nodes(&|i| system.rest_position(i).z),
+            Self::RestAngle => nodes(&|i| piece(i).map_or(0.0, |piece| piece.angle)),
+            Self::Network | Self::Bladder | Self::Array => None,
+        }
     }
 
     /// Values in a system with the given length of tubes [m].
     pub fn values(self, system: &System, tube_length: f64) -> Vec<f64> {
-        let mesh = &system.mesh;
-        match self {
-            Self::Nodes => return (0..mesh.nodes).map(|i| mesh.node_coordinate(i)).collect(),
-            Self::Cells => return (0..mesh.cells).map(|c| mesh.cell_coordinate(c)).collect(),
-            Self::Network | Self::Bladder | Self::Array => {}
+        if let Some(values) = self.along_beams(system) {
+            return values;
         }
         let (Some(wet), Some(fluid)) = (&system.model.wet, &system.fluid) else {
             return vec![];
@@ -222,6 +290,11 @@ impl FieldAxis {
             .map(|(array, cell)| at(array, cell))
             .collect()
     }
+}
+
+/// Cells of the beams, without the empty ones between them.
+pub fn cells(mesh: &BeamMesh) -> impl Iterator<Item = usize> + '_ {
+    (0..mesh.cells).filter(|cell| !mesh.is_gap(*cell))
 }
 
 /// Cells in the order of `X_f`.

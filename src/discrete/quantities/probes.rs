@@ -1,6 +1,8 @@
 //! Quantities at places named in the case.
 
-use super::Observable;
+use NeededPart::{Beam, Bladders, Structure};
+
+pub use super::column::{HistoryColumn, is_stress, key, tip_of_beam};
 use super::evaluate::StateView;
 use crate::case::schema::{Case, Probe as Written, ROUNDING};
 use crate::case::spans;
@@ -20,8 +22,10 @@ use crate::numerics::Planar;
 pub struct MeshProbe {
     /// First part of its column names.
     pub name: String,
-    /// Place `θ/l_s`.
+    /// Place `θ/l_s`; in a structure along the whole beam.
     pub at: f64,
+    /// True if only its motion is recorded.
+    motion_only: bool,
     /// Node before it, and the fraction of the distance to the next.
     node: (usize, f64),
     /// Cell whose midpoint is before it, and the fraction of the distance to the next midpoint; below 0 or above 1 at
@@ -41,87 +45,45 @@ pub struct MeshProbe {
     bending: f64,
 }
 
-/// One row of the table: last part of the column name, unit, description, need of bladders, evaluation.
+/// Cases in which a quantity exists.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum NeededPart {
+    Beam,
+    Bladders,
+    Structure,
+}
+
+/// One row of the table: last part of the column name, unit, description, needed part of the case, evaluation.
 type Entry = (
     &'static str,
     &'static str,
     &'static str,
-    bool,
+    NeededPart,
     fn(&MeshProbe, &StateView) -> f64,
 );
 
 /// Quantities recorded at each probe.
 #[rustfmt::skip]
-const TABLE: [Entry; 13] = [
-    ("u1", "m", "transverse displacement", false, |p, look| p.displacement(look).x),
-    ("u3", "m", "axial displacement", false, |p, look| p.displacement(look).z),
-    ("angle", "rad", "slope angle phi, counted over full turns", false, MeshProbe::angle),
-    ("curvature", "1/m", "curvature", false, MeshProbe::curvature),
-    ("strain_upper", "1", "strain lambda - 1 + kappa h_s/2 of the upper surface", false, |p, look| p.surface(look, 0)),
-    ("strain_lower", "1", "strain lambda - 1 - kappa h_s/2 of the lower surface", false, |p, look| p.surface(look, 1)),
-    ("stress_upper", "Pa", "stress along the beam of the solid at the upper surface, without viscous damping", false, |p, look| p.stress(look, 0)),
-    ("stress_lower", "Pa", "stress along the beam of the solid at the lower surface, without viscous damping", false, |p, look| p.stress(look, 1)),
-    ("normal_force", "N", "normal force without viscous damping", false, |p, look| { let n = look.w.normals(); p.of_cells(|c| n[c]) }),
-    ("moment", "N m", "bending moment without viscous damping", false, |p, look| { let m = look.w.moments(); p.of_nodes(|i| m[i]) }),
-    ("shear_force", "N", "shear force", false, |p, look| p.of_cells(|c| look.w.shears()[c])),
-    ("pressure_upper", "Pa", "mean pressure of the upper bladder", true, |p, look| p.pressure(look, 0)),
-    ("pressure_lower", "Pa", "mean pressure of the lower bladder", true, |p, look| p.pressure(look, 1)),
+const TABLE: [Entry; 15] = [
+    ("u1", "m", "transverse displacement", Beam, |p, look| p.displacement(look).x),
+    ("u3", "m", "axial displacement", Beam, |p, look| p.displacement(look).z),
+    ("angle", "rad", "slope angle phi, counted over full turns", Beam, MeshProbe::angle),
+    ("x", "m", "position x in the axes of the case", Structure, |p, look| p.position(look).x),
+    ("z", "m", "position z in the axes of the case", Structure, |p, look| p.position(look).z),
+    ("curvature", "1/m", "curvature", Beam, MeshProbe::curvature),
+    ("strain_upper", "1", "strain lambda - 1 + kappa h_s/2 of the upper surface", Beam, |p, look| p.surface(look, 0)),
+    ("strain_lower", "1", "strain lambda - 1 - kappa h_s/2 of the lower surface", Beam, |p, look| p.surface(look, 1)),
+    ("stress_upper", "Pa", "stress along the beam of the solid at the upper surface, without viscous damping", Beam, |p, look| p.stress(look, 0)),
+    ("stress_lower", "Pa", "stress along the beam of the solid at the lower surface, without viscous damping", Beam, |p, look| p.stress(look, 1)),
+    ("normal_force", "N", "normal force without viscous damping", Beam, |p, look| { let n = look.w.normals(); p.of_cells(|c| n[c]) }),
+    ("moment", "N m", "bending moment without viscous damping", Beam, |p, look| { let m = look.w.moments(); p.of_nodes(|i| m[i]) }),
+    ("shear_force", "N", "shear force", Beam, |p, look| p.of_cells(|c| look.w.shears()[c])),
+    ("pressure_upper", "Pa", "mean pressure of the upper bladder", Bladders, |p, look| p.pressure(look, 0)),
+    ("pressure_lower", "Pa", "mean pressure of the lower bladder", Bladders, |p, look| p.pressure(look, 1)),
 ];
 
-/// A column of the history: one number per output time.
-#[derive(Clone, Debug, PartialEq)]
-pub struct HistoryColumn {
-    /// Name without unit, snake case: `tip_u1`.
-    pub name: String,
-    /// Unit: `m`; `1` when dimensionless.
-    pub unit: &'static str,
-    /// Description in one sentence.
-    pub about: String,
-}
-
-impl HistoryColumn {
-    /// Name with unit, for keys of equilibria: `tip_u1_m`. The summary of a run uses [`key`].
-    pub fn key(&self) -> String {
-        let unit = match self.unit {
-            "1" => return self.name.clone(),
-            "Pa" => "pa",
-            "J" => "j",
-            "W" => "w",
-            other => other,
-        };
-        format!("{}_{unit}", self.name)
-    }
-}
-
-impl From<Observable> for HistoryColumn {
-    fn from(one: Observable) -> Self {
-        Self {
-            name: one.name().into(),
-            unit: one.unit(),
-            about: one.about().into(),
-        }
-    }
-}
-
-/// Name with unit, for keys of probes and ports in the summary: `middle_u1_m`, `port_inlet_flow_m3_s`.
-pub fn key(name: &str, unit: &str) -> String {
-    match unit {
-        "1" => name.into(),
-        unit => format!(
-            "{name}_{}",
-            unit.to_lowercase()
-                .replace("1/", "per_")
-                .replace([' ', '/'], "_")
-                .replace('^', "")
-        ),
-    }
-}
-
-/// True if the name of a column is that of a stress of the solid. It has the unit of fluid pressures but another order
-/// of magnitude.
-pub fn is_stress(name: &str) -> bool {
-    name.ends_with("_stress_upper") || name.ends_with("_stress_lower")
-}
+/// Quantities of motion.
+const MOTION: [&str; 5] = ["u1", "u3", "angle", "x", "z"];
 
 /// Columns of all probes of a system, one probe after the other.
 pub fn columns(system: &System) -> impl Iterator<Item = HistoryColumn> + '_ {
@@ -141,14 +103,20 @@ fn entries(system: &System) -> impl Iterator<Item = (&MeshProbe, Entry)> {
     let wet = system.has_bladders();
     // a moment-curvature law does not determine the stress of fibres
     let linear = system.sections.laws.is_empty();
-    let of = move |probe| {
-        TABLE
-            .into_iter()
-            .filter(move |entry| wet || !entry.3)
-            .filter(move |entry| linear || !entry.0.starts_with("stress"))
-            .map(move |e| (probe, e))
+    let placed = system.model.structure.is_some();
+    let recorded = move |probe: &MeshProbe, entry: &Entry| {
+        let there = match entry.3 {
+            Beam => true,
+            Bladders => wet,
+            Structure => placed,
+        };
+        there && (linear || !entry.0.starts_with("stress")) && (!probe.motion_only || MOTION.contains(&entry.0))
     };
-    system.probes.iter().flat_map(of)
+    let all = system.probes.iter();
+    all.flat_map(move |probe| {
+        let own = TABLE.into_iter().filter(move |entry| recorded(probe, entry));
+        own.map(move |entry| (probe, entry))
+    })
 }
 
 impl MeshProbe {
@@ -183,6 +151,14 @@ impl MeshProbe {
         all
     }
 
+    /// The tip of a beam of a structure.
+    pub(in crate::discrete) fn at_tip(beam: &str, mesh: &BeamMesh, sections: &MeshSections) -> Self {
+        Self {
+            motion_only: true,
+            ..Self::new(&format!("{beam}.tip"), 1.0, mesh, sections)
+        }
+    }
+
     fn new(name: &str, at: f64, mesh: &BeamMesh, sections: &MeshSections) -> Self {
         let place = mesh.place(at);
         // a place at a node is there in spite of rounding
@@ -206,6 +182,7 @@ impl MeshProbe {
         Self {
             name: name.into(),
             at,
+            motion_only: false,
             node: (node, within),
             cell,
             strained,
@@ -235,9 +212,9 @@ impl MeshProbe {
         };
         let (node, share) = self.node;
         let beam = mesh.beam_of_node(node);
-        let turns = match beam {
-            0 => look.tip_angle() - tip_angle(look.system, look.now, &look.w, 0),
-            _ => 0.0,
+        let turns = match beam == look.system.first_tip() {
+            true => look.tip_angle() - tip_angle(look.system, look.now, &look.w, beam),
+            false => 0.0,
         };
         // from the midpoint of the first cell to that of the cell
         let passed = rotation(look.system, &look.w, node);
@@ -268,6 +245,13 @@ impl MeshProbe {
         let bent = ((2.0 - share) * kappa[0] + (1.0 + share) * kappa[1]) / 3.0;
         let length = system.mesh.lengths[node];
         straight - line(system, w, node).normal() * (0.5 * within * length * length * bent)
+    }
+
+    /// Position in the axes of the case [m].
+    fn position(&self, look: &StateView) -> Planar<f64> {
+        let (node, share) = self.node;
+        let at = |node: usize| look.system.rest_position(node);
+        at(node) * (1.0 - share) + at(node + 1) * share + look.system.in_axes_of_case(node, self.displacement(look))
     }
 
     /// `M/EI + α_p + κ_0` of the place: M is continuous where EI and α_p jump, and smooth in a taper.

@@ -4,7 +4,7 @@ use super::evaluate::StateView;
 use super::probes::HistoryColumn;
 use crate::case::{Rotation, Translation};
 use crate::discrete::System;
-use crate::discrete::angle_unwrapping::{first_angle, nearest, tip_angle};
+use crate::discrete::angle_unwrapping::{first_angle, nearest};
 use crate::discrete::ledger::reaction;
 use crate::discrete::residual::momentum::end_tangent;
 
@@ -19,30 +19,8 @@ enum ReactionKind {
     Angle(usize),
     /// Force of springs and dashpots of an attachment, transverse (0) or axial (1).
     Attached(usize, usize),
-    /// Motion of the tip of a beam of a structure.
-    Tip(usize, TipMotion),
     /// Rotation of another part of a joint relative to the first one: numbers of both angles, and of the joint.
     Turned([usize; 2], usize),
-}
-
-/// Motion of the tip of a beam of a structure.
-#[derive(Clone, Copy, Debug, PartialEq)]
-enum TipMotion {
-    /// Displacement along the axes of the beam, transverse (0) or axial (1).
-    Displacement(usize),
-    /// Slope angle.
-    Angle,
-    /// Position along the axes of the case.
-    Position(usize),
-}
-
-/// Number of the last of the parts of which each beam of a structure consists.
-fn tips(system: &System) -> Vec<usize> {
-    let Some(structure) = &system.model.structure else {
-        return vec![];
-    };
-    let ends = structure.beams.iter().enumerate();
-    ends.filter(|(_, beam)| beam.piece.at_end[1]).map(|(k, _)| k).collect()
 }
 
 /// First part of the names of quantities of the beam of an end; empty for a single beam.
@@ -70,11 +48,6 @@ fn all(system: &System) -> Vec<ReactionKind> {
             Rotation::Moment(_) if k % 2 == 0 && turns_freely(system, k) => all.push(ReactionKind::Angle(k)),
             Rotation::Moment(_) => {}
         }
-    }
-    for tip in tips(system) {
-        use TipMotion::{Angle, Displacement, Position};
-        let motions = [Displacement(0), Displacement(1), Angle, Position(0), Position(1)];
-        all.extend(motions.map(|motion| ReactionKind::Tip(tip, motion)));
     }
     let hinges = system.joints.hinges.iter().enumerate();
     all.extend(hinges.map(|(k, hinge)| ReactionKind::Turned(hinge.angles, k)));
@@ -121,18 +94,6 @@ pub fn columns(system: &System) -> impl Iterator<Item = HistoryColumn> {
                     ENDS[k % 2]
                 ),
             ),
-            ReactionKind::Tip(beam, motion) => {
-                let (what, unit, about) = match motion {
-                    TipMotion::Displacement(0) => {
-                        ("tip_u1", "m", "transverse displacement of its tip, in the beam's axes")
-                    }
-                    TipMotion::Displacement(_) => ("tip_u3", "m", "axial displacement of its tip, in the beam's axes"),
-                    TipMotion::Angle => ("tip_angle", "rad", "rotation of its tip, counted over full turns"),
-                    TipMotion::Position(0) => ("tip_x", "m", "position x of its tip, in the axes of the case"),
-                    TipMotion::Position(_) => ("tip_z", "m", "position z of its tip, in the axes of the case"),
-                };
-                (format!("{}{what}", of(2 * beam)), unit, about.to_owned())
-            }
             ReactionKind::Turned(_, k) => (
                 format!("hinge_{}_angle", k + 1),
                 "rad",
@@ -164,14 +125,6 @@ pub fn values(look: &StateView, put: &mut impl FnMut(f64)) {
             ReactionKind::Angle(k) => {
                 let tangent = end_tangent(system, now, w, node(k));
                 nearest(tangent.x.atan2(tangent.z), first_angle(system, now, w, k / 2))
-            }
-            ReactionKind::Tip(beam, motion) => {
-                let tip = node(2 * beam + 1);
-                match motion {
-                    TipMotion::Displacement(axis) => w.motion.u[tip][axis],
-                    TipMotion::Angle => tip_angle(system, now, w, beam),
-                    TipMotion::Position(axis) => system.position(w, tip)[axis],
-                }
             }
             ReactionKind::Turned([first, other], _) => w.shape.joints.angle[other] - w.shape.joints.angle[first],
             ReactionKind::Attached(k, axis) => {

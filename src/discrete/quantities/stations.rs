@@ -3,7 +3,7 @@
 use super::evaluate::StateView;
 use super::probes::{HistoryColumn, key};
 use super::reactions;
-use crate::case::wiring::bladder_label;
+use crate::case::wiring::BladderLabels;
 use crate::discrete::ledger::ports;
 use crate::discrete::{FluidMesh, System, beam_contacts, contact_points};
 use crate::model::network::LinkKind;
@@ -108,7 +108,7 @@ fn of_network(system: &System, at_rest: bool) -> Vec<HistoryColumn> {
         }));
     }
     if at_rest {
-        all.extend(bladders(wet.per_row));
+        all.extend(bladders(&wet.labels));
     }
     all
 }
@@ -135,11 +135,11 @@ fn tubes(fluid: &FluidMesh) -> impl Iterator<Item = (usize, usize)> + '_ {
 }
 
 /// Mean pressure of every bladder; only for states at rest, because runs record pressures as fields.
-fn bladders(per_row: usize) -> impl Iterator<Item = HistoryColumn> {
-    (0..2 * per_row).map(move |bladder| {
-        let label = bladder_label(bladder, per_row);
+fn bladders(labels: &BladderLabels) -> impl Iterator<Item = HistoryColumn> {
+    (0..2 * labels.per_row).map(move |bladder| {
+        let label = labels.label(bladder);
         HistoryColumn {
-            name: format!("{}_pressure", begin("bladder", &label.to_string())),
+            name: format!("{}_pressure", begin("bladder", &label)),
             unit: "Pa",
             about: format!("mean pressure of bladder {label}"),
         }

@@ -8,12 +8,15 @@ use super::folder::ResultFolder;
 use super::numbers::shortest;
 use super::plot::canvas::{LineStyle, TextAnchor, TextStyle};
 use super::plot::colour::PALETTE;
+use super::plot::deflection::structure_panel;
 use super::plot::picture::{Glyph, Panel, Picture, PictureAxis, PictureSeries, equally_scaled};
 use super::plot::{extent, over_time};
 use super::records;
 use crate::case::schema::Case;
-use crate::discrete::quantities::{Observable, QuantityRole};
+use crate::discrete::System;
+use crate::discrete::quantities::{FieldAxis, Observable, PlacedNodes, QuantityRole};
 use crate::error::Result;
+use crate::numerics::Planar;
 use crate::results;
 use crate::results::equilibrium::{self as kept, EquilibriumPath, NamedNumbers};
 use crate::results::run::{Bands, Status};
@@ -119,8 +122,11 @@ pub fn json(found: &LoadPath) -> String {
 
 /// Writes the files into a folder; other files in it stay.
 pub fn write(folder: &mut ResultFolder, found: &LoadPath) -> Result<Vec<PathBuf>> {
-    let mut files = vec![(CSV, table(found)), (SHAPES, shapes(found)), (JSON, json(found))];
-    files.extend(drawn(found).map(|text| (PICTURE, text)));
+    let system = System::new(found.case)?;
+    let (theta, placed) = (FieldAxis::Nodes.values(&system, 0.0), PlacedNodes::new(&system));
+    let shapes = shapes(found, &theta, placed.as_ref());
+    let mut files = vec![(CSV, table(found)), (SHAPES, shapes), (JSON, json(found))];
+    files.extend(drawn(found, &theta, placed.as_ref()).map(|text| (PICTURE, text)));
     folder.fill_with(&found.case.written(), files)
 }
 
@@ -144,19 +150,40 @@ fn table(found: &LoadPath) -> String {
     records::text(columns.chain(["unstable_modes [1]".into()]).chain(stage), rows)
 }
 
-/// One row per node: `theta [m]`, then x and z of every state.
-fn shapes(found: &LoadPath) -> String {
+/// One row per node: `theta [m]`, then x and z of every state. In a structure the name of the beam precedes them, and x and z are along the
+/// axes of the case.
+fn shapes(found: &LoadPath, theta: &[f64], placed: Option<&PlacedNodes>) -> String {
     let states = &found.path.states;
-    let length = found.case.beam.length_m;
     let shares = states.iter().map(|state| shortest(state.load_factor()));
     let columns = shares.flat_map(|share| [format!("x at {share} [m]"), format!("z at {share} [m]")]);
     let nodes = states.first().map_or(0, |s| s.u1.len());
+    let name = |beam: usize| found.case.beams[beam].name.clone();
     let rows = (0..nodes).map(|i| {
-        let theta = length * i as f64 / (nodes - 1) as f64;
-        let places = states.iter().flat_map(|state| [state.u1[i], theta + state.u3[i]]);
-        [theta].into_iter().chain(places).map(shortest).collect()
+        let places = states.iter().flat_map(|state| match placed {
+            None => [state.u1[i], theta[i] + state.u3[i]],
+            Some(placed) => {
+                let at = placed.position(
+                    i,
+                    Planar {
+                        x: state.u1[i],
+                        z: state.u3[i],
+                    },
+                );
+                [at.x, at.z]
+            }
+        });
+        let numbers = [theta[i]].into_iter().chain(places).map(shortest);
+        placed
+            .map(|placed| name(placed.beam[i]))
+            .into_iter()
+            .chain(numbers)
+            .collect()
     });
-    records::text(["theta [m]".into()].into_iter().chain(columns), rows)
+    let first = placed
+        .map(|_| "beam".to_owned())
+        .into_iter()
+        .chain(["theta [m]".into()]);
+    records::text(first.chain(columns), rows)
 }
 
 /// Description of the loads.
@@ -170,7 +197,7 @@ fn about(options: &EquilibriumOptions) -> String {
 }
 
 /// Picture of the load factor over displacement (solid where stable), and of shapes along the path.
-fn drawn(found: &LoadPath) -> Option<String> {
+fn drawn(found: &LoadPath, theta: &[f64], placed: Option<&PlacedNodes>) -> Option<String> {
     let states = &found.path.states;
     let stable = |k: usize| states[k].stability.as_ref().is_none_or(|s| s.unstable == 0);
     // of probes only the deflection, since ends may be held
@@ -222,7 +249,10 @@ fn drawn(found: &LoadPath) -> Option<String> {
         return None;
     }
     let width = 230.0 * panels.len().max(2) as f64 - 30.0;
-    let rows = [Some(panels), shapes_drawn(found, width).map(|panel| vec![panel])];
+    let rows = [
+        Some(panels),
+        shapes_drawn(found, theta, placed, width).map(|panel| vec![panel]),
+    ];
     let picture = Picture {
         title: format!("{} · equilibria", found.case.name),
         about: about(found.options),
@@ -232,7 +262,7 @@ fn drawn(found: &LoadPath) -> Option<String> {
 }
 
 /// Some shapes of the path, from blue to red, with equal scales along and across.
-fn shapes_drawn(found: &LoadPath, width: f64) -> Option<Panel> {
+fn shapes_drawn(found: &LoadPath, theta: &[f64], placed: Option<&PlacedNodes>, width: f64) -> Option<Panel> {
     let states = &found.path.states;
     let chosen: Vec<&EquilibriumState> = states
         .iter()
@@ -240,17 +270,26 @@ fn shapes_drawn(found: &LoadPath, width: f64) -> Option<Panel> {
         .step_by(states.len().div_ceil(DRAWN).max(1))
         .collect();
     let shape = |state: &EquilibriumState| -> Vec<(f64, f64)> {
-        let theta = |i: usize| found.case.beam.length_m * i as f64 / (state.u1.len() - 1) as f64;
-        let all = state.u1.iter().zip(&state.u3).enumerate();
-        all.map(|(i, (u1, u3))| (theta(i) + u3, *u1)).collect()
+        let all = state.u1.iter().zip(&state.u3).zip(theta);
+        match placed {
+            None => all.map(|((u1, u3), theta)| (theta + u3, *u1)).collect(),
+            Some(placed) => placed.line(&state.u1, &state.u3),
+        }
     };
     let shapes: Vec<_> = chosen.into_iter().rev().map(shape).collect();
+    let places: Vec<f64> = (0..shapes.len()).map(|k| k as f64).collect();
+    let legend = "squares: states; dashed: unstable; B bifurcation, L limit point";
+    if let Some(placed) = placed {
+        let panel = structure_panel(placed, over_time(&places, shapes), width)?;
+        return Some(panel.headed(format!(
+            "shape, blue at rest, red at the end of the path, dashed straight; {legend}"
+        )));
+    }
     let over = |of: fn(&(f64, f64)) -> f64| extent(shapes.iter().flatten().map(of));
     let (z, x, height) = equally_scaled(over(|p| p.0)?, over(|p| p.1)?, width);
-    let places: Vec<f64> = (0..shapes.len()).map(|k| k as f64).collect();
     let name = "shape: z = θ + u₃; blue at rest, red at the end of the path";
     let z = PictureAxis::new(name, "m", 8).between(z.0, z.1);
     let x = PictureAxis::new("x = u₁", "m", ((height / 34.0) as usize).max(3)).between(x.0, x.1);
     let panel = Panel::new((width, height), z, x, over_time(&places, shapes));
-    Some(panel.headed("squares: states; dashed: unstable; B bifurcation, L limit point"))
+    Some(panel.headed(legend))
 }

@@ -1,7 +1,7 @@
 //! Text of a load path.
 
 use super::LoadPath;
-use crate::discrete::quantities::probes::is_stress;
+use crate::discrete::quantities::probes::{is_stress, tip_of_beam};
 use crate::discrete::quantities::{Group, Observable};
 use crate::output::columns::{self, aligned, if_any, joined, warnings};
 use crate::output::numbers::{counted, quantity, significant, with_error};
@@ -54,7 +54,8 @@ pub fn describe(found: &LoadPath) -> String {
     if path.fault.is_none() && loads_nothing(found) {
         let at = significant(found.options.at_s, 6);
         text.push_str(&format!(
-            "nothing acts at t = {at} s: beam and bladders are as they are made\n"
+            "nothing acts at t = {at} s: {} and bladders are as they are made\n",
+            if found.case.is_structure() { "structure" } else { "beam" }
         ));
     }
     for s in found.sensitivities {
@@ -92,7 +93,7 @@ fn last_with_errors(found: &LoadPath) -> String {
     let row = found.path.states.last().map_or(&[][..], |state| &state.row);
     let error = |column: &HistoryColumn| found.meshes?.errors.get(&column.name).copied();
     let texts = found.columns.iter().zip(row).skip(1).filter_map(|(column, value)| {
-        let shown = counts(column) && value.abs() > floor(found, column.unit);
+        let shown = counts(found, column) && value.abs() > floor(found, column.unit);
         let error = error(column).filter(|_| shown)?;
         Some(format!("{} {}", column.name, with_error(*value, error, column.unit)))
     });
@@ -102,10 +103,18 @@ fn last_with_errors(found: &LoadPath) -> String {
     }
 }
 
-/// True for quantities of the tip and pressures.
-fn counts(column: &HistoryColumn) -> bool {
+/// Largest number of beams of a structure whose tips are in the table.
+const BEAMS: usize = 3;
+
+/// True for quantities of the tip, in a structure of the tips of the first beams, and pressures.
+fn counts(found: &LoadPath, column: &HistoryColumn) -> bool {
+    let beams = &found.case.beams;
+    if let Some((beam, what)) = tip_of_beam(&column.name) {
+        let shown = beams.iter().take(BEAMS).any(|one| one.name == beam);
+        return shown && ["u1", "u3", "angle"].contains(&what);
+    }
     let group = Observable::named(&column.name).map(Observable::group);
-    matches!(group, Some(Group::Tip | Group::Pressure))
+    group == Some(Group::Pressure) || (group == Some(Group::Tip) && beams.is_empty())
 }
 
 /// Loads of the last state.
@@ -125,7 +134,7 @@ fn reached(found: &LoadPath, last: &EquilibriumState) -> String {
 
 /// Some of the states, the last among them.
 fn table(found: &LoadPath) -> String {
-    let shown = |(k, column): &(usize, &HistoryColumn)| *k == 0 || counts(column);
+    let shown = |(k, column): &(usize, &HistoryColumn)| *k == 0 || counts(found, column);
     let columns: Vec<_> = found.columns.iter().enumerate().filter(shown).collect();
     let states = &found.path.states;
     let every = states.len().div_ceil(ROWS).max(1);

@@ -4,6 +4,7 @@ use std::path::Path;
 
 use super::ExportedFiles;
 use super::staged_folder::StagedFolder;
+use crate::discrete::quantities::{BeamField, FieldAxis};
 use crate::error::Result;
 use crate::output::folder::TABLES;
 use crate::output::history::HistoryWriter;
@@ -13,7 +14,7 @@ use crate::study::compare::{Array, Recording};
 /// Writes one table per field into `dir/csv`.
 ///
 /// Columns are `t [s]`, then places: `theta=0.0025 m` along the beam, `bladder=-3 s=0.0115 m` in the fluid, with `s` from the bladder's
-/// inlet. The name of the field, which is also that of the file, contains the unit.
+/// inlet; in a structure `beam=left theta=0.0025 m` and `bladder=left:-3 s=0.0115 m`. The name of the field, which is also that of the file, contains the unit.
 pub fn write(dir: &Path, from: &Recording, instants: &[usize]) -> Result<ExportedFiles> {
     let staged = StagedFolder::new(dir, TABLES)?;
     let mut written = ExportedFiles::new(staged.target().to_path_buf());
@@ -42,13 +43,28 @@ fn places(from: &Recording, field: &Array) -> Vec<String> {
     if let Some(bladders) = from.axis("bladder").filter(|b| fluid && b.len() == field.len) {
         return in_bladders(from, bladders);
     }
-    let axis = if field.name == "normal_force_n" {
-        "theta_cell_m"
-    } else {
-        "theta_node_m"
+    let [axis, beam] = match BeamField::named(&field.name).map(BeamField::axis) {
+        Some(FieldAxis::Cells) => [FieldAxis::Cells, FieldAxis::BeamOfCell],
+        _ => [FieldAxis::Nodes, FieldAxis::BeamOfNode],
     };
-    match from.axis(axis).filter(|a| a.len() == field.len) {
-        Some(theta) => theta.iter().map(|&x| format!("theta={} m", shortest(x))).collect(),
+    let along = |axis: FieldAxis| from.axis(axis.name()).filter(|a| a.len() == field.len);
+    let names: Vec<String> = from.labels().beams().map(str::to_owned).collect();
+    let beam = |k: usize| {
+        let number = along(beam)?[k] as usize;
+        Some(format!("beam={} ", names.get(number.checked_sub(1)?)?))
+    };
+    match along(axis) {
+        Some(theta) => theta
+            .iter()
+            .enumerate()
+            .map(|(k, &x)| {
+                let of = beam(k);
+                // parts of a beam meet in two nodes at a joint
+                let again = of.is_some() && k > 0 && theta[k - 1] == x;
+                let behind = if again { " behind the joint" } else { "" };
+                format!("{}theta={} m{behind}", of.unwrap_or_default(), shortest(x))
+            })
+            .collect(),
         None => (0..field.len).map(|k| format!("place={k}")).collect(),
     }
 }
@@ -56,6 +72,10 @@ fn places(from: &Recording, field: &Array) -> Vec<String> {
 fn in_bladders(from: &Recording, bladders: &[f64]) -> Vec<String> {
     let first = bladders.iter().take_while(|b| **b == bladders[0]).count().max(1);
     let ds = from.bladder_length().unwrap_or(1.0) / first as f64;
-    let name = |(k, b): (usize, &f64)| format!("bladder={b} s={} m", shortest(((k % first) as f64 + 0.5) * ds));
+    let labels = from.labels();
+    let name = |(k, b): (usize, &f64)| {
+        let bladder = labels.of_number(*b as i64);
+        format!("bladder={bladder} s={} m", shortest(((k % first) as f64 + 0.5) * ds))
+    };
     bladders.iter().enumerate().map(name).collect()
 }

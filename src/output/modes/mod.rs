@@ -1,6 +1,7 @@
 //! Output files of a modal analysis, `modes.csv`, `modes.json`, `modes.npz` and `modes.svg`, and its text.
 
 mod completeness;
+mod picture;
 mod table;
 
 use std::io;
@@ -13,10 +14,8 @@ use super::accuracy;
 use super::arrays::write_array;
 use super::folder::{ResultFolder, fault};
 use super::numbers::{counted, significant};
-use super::plot::canvas::{INK, LineStyle};
-use super::plot::colour::{Colour, PALETTE};
-use super::plot::picture::{Panel, Picture, PictureAxis, PictureSeries};
 use crate::case::schema::Effect;
+use crate::discrete::quantities::FieldAxis;
 use crate::error::{Code, Result};
 use crate::model::passivity::{self, Passivity};
 use crate::results;
@@ -272,7 +271,7 @@ pub fn write(folder: &mut ResultFolder, report: &Report) -> Result<Vec<PathBuf>>
         (JSON, json(report).into_bytes()),
         (ARRAYS, arrays),
     ];
-    files.extend(drawn(report).map(|text| (PICTURE, text.into_bytes())));
+    files.extend(picture::drawn(report).map(|text| (PICTURE, text.into_bytes())));
     folder.fill(files)
 }
 
@@ -283,8 +282,18 @@ fn pack(found: &Modes) -> io::Result<Vec<u8>> {
     let count = found.modes.len() as u64;
     let one = |f: fn(&Mode) -> f64| found.modes.iter().map(f);
     let nodes = system.mesh.nodes;
-    let theta = (0..nodes).map(|i| system.mesh.node_coordinate(i));
-    write_array(&mut npz, "theta_m", &[nodes as u64], theta)?;
+    let along = |axis: FieldAxis| axis.values(system, 0.0).into_iter();
+    write_array(&mut npz, "theta_m", &[nodes as u64], along(FieldAxis::Nodes))?;
+    if system.model.structure.is_some() {
+        for axis in [
+            FieldAxis::BeamOfNode,
+            FieldAxis::RestX,
+            FieldAxis::RestZ,
+            FieldAxis::RestAngle,
+        ] {
+            write_array(&mut npz, axis.name(), &[nodes as u64], along(axis))?;
+        }
+    }
     write_array(&mut npz, "growth_per_s", &[count], one(|m| m.s.re))?;
     write_array(&mut npz, "angular_frequency_per_s", &[count], one(|m| m.s.im))?;
     type Field = fn(&Mode) -> &[Complex<f64>];
@@ -305,64 +314,6 @@ fn pack(found: &Modes) -> io::Result<Vec<u8>> {
     }
     Ok(npz.finish()?.into_inner())
 }
-
-/// Largest number of modes drawn.
-const DRAWN: usize = 8;
-
-/// Picture of the shapes: displacements on the left, pressures on the right.
-fn drawn(report: &Report) -> Option<String> {
-    let mesh = &report.found.about.system().mesh;
-    let theta: Vec<f64> = (0..mesh.nodes).map(|i| mesh.node_coordinate(i)).collect();
-    let per_row = report.found.about.system().model.wet.as_ref().map_or(0, |w| w.per_row);
-    let numbers: Vec<f64> = (1..=per_row).map(|j| j as f64).collect();
-    let along = PictureAxis::new("material coordinate θ", "m", 6).between(*theta.first()?, *theta.last()?);
-    let row = |(k, mode): (usize, &Mode)| {
-        let shape = &mode.shape;
-        let beam = [(&shape.u1[..], "u₁ across"), (&shape.u3, "u₃ along")];
-        let mut left = complex(along.clone(), &theta, beam, ("u", "m"));
-        left.heading.1.bold = true;
-        left.heading.1.colour = if mode.kind.grows() { UNSTABLE } else { INK };
-        left = left.headed(format!("{}  {}", k + 1, table::describe(mode)));
-        let wet = per_row > 0 && shape.pressure.len() == 2 * per_row;
-        let right = wet.then(|| {
-            let (upper, lower) = shape.pressure.split_at(per_row);
-            let x = PictureAxis::new("bladder", "1", 10).between(0.5, per_row as f64 + 0.5);
-            complex(x, &numbers, [(upper, "upper row"), (lower, "lower row")], ("p", "Pa"))
-        });
-        [left].into_iter().chain(right).collect()
-    };
-    let picture = Picture {
-        title: format!("{} · modes", report.case),
-        about: format!(
-            "about {}; full lines in phase, dashed a quarter of a period behind",
-            report.about()
-        ),
-        rows: report.found.modes.iter().take(DRAWN).enumerate().map(row).collect(),
-    };
-    picture.svg()
-}
-
-/// Panel of two complex curves over an axis.
-fn complex(x: PictureAxis, xs: &[f64], lines: [(&[Complex<f64>], &str); 2], (name, unit): (&str, &str)) -> Panel {
-    let all = lines.iter().flat_map(|(y, _)| y.iter());
-    let size = all.fold(0.0_f64, |m, y| m.max(y.re.abs()).max(y.im.abs()));
-    let mut series = vec![];
-    for ((y, name), colour) in lines.into_iter().zip(PALETTE) {
-        let part = |of: fn(&Complex<f64>) -> f64| xs.iter().copied().zip(y.iter().map(of));
-        // a curve that is in phase throughout has no imaginary part to draw
-        if y.iter().any(|y| y.im.abs() > 1e-3 * size) {
-            let behind = LineStyle::dashed(colour, 1.1, (4.0, 3.0));
-            series.push(PictureSeries::line(part(|y| y.im), behind));
-        }
-        let ahead = PictureSeries::line(part(|y| y.re), LineStyle::solid(colour, 1.6));
-        series.push(ahead.named(name));
-    }
-    let floor = (1e-3 * size).max(f64::MIN_POSITIVE.sqrt());
-    let y = PictureAxis::new(name, unit, 3).with(&[0.0]).above(floor);
-    Panel::new((380.0, 112.0), x, y, series)
-}
-
-const UNSTABLE: Colour = Colour(0xb0, 0x1c, 0x2e);
 
 /// Part in which a mode moves.
 fn moves(mode: &Mode) -> &'static str {

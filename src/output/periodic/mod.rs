@@ -246,7 +246,15 @@ fn branch_lines(found: &CyclePath, points: &[(f64, f64)]) -> Vec<PictureSeries> 
 pub fn figures(summary: &Summary, period: f64, error: &dyn Fn(&str) -> Option<f64>) -> String {
     let quantities = &summary.quantities;
     let mut lines = vec![];
-    for one in SHOWN {
+    let beams: Vec<&str> = summary.beams().collect();
+    for (beam, one) in beams.iter().flat_map(|beam| SHOWN.map(|one| (beam, one))) {
+        let tip = summary.probes.get(&format!("{beam}.{}", one.name()));
+        if let Some(value) = tip.and_then(|q| q.window_max_abs) {
+            lines.push([format!("largest {beam}.{}", short(one)), quantity(value, one.unit(), 4)]);
+        }
+    }
+    let of_first = |one: &Interest| !beams.is_empty() && matches!(one, Interest::TipU1 | Interest::TipU3);
+    for one in SHOWN.into_iter().filter(|one| !of_first(one)) {
         if let Some(value) = quantities.get(one.name()).and_then(|q| q.window_max_abs) {
             lines.push([format!("largest {}", short(one)), quantity(value, one.unit(), 4)]);
         }

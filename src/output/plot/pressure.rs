@@ -16,8 +16,8 @@ pub struct Pressure {
     pub times: Vec<f64>,
     /// Coordinate along the networks, one per cell.
     pub x_f: Vec<f64>,
-    /// Bladder of each cell as `R j`: 3 in the upper row, −3 in the lower.
-    pub bladder: Vec<i64>,
+    /// Bladder of each cell as `R j`: 3 in the upper row, −3 in the lower; in a structure with its beam, left:3.
+    pub bladder: Vec<String>,
     /// Network of each cell.
     pub network: Vec<i64>,
     /// Pressure [Pa], one array per instant.
@@ -34,12 +34,14 @@ pub fn draw(data: &Pressure) -> Option<String> {
     if n == 0 || data.pressure.iter().any(|p| p.len() != n) {
         return None;
     }
-    let bladders = runs(n, |k| data.bladder.get(k).copied().unwrap_or(0));
+    let bladders = runs(n, |k| data.bladder.get(k));
     // ranges of connected cells
     let networks = runs(n, |k| data.network.get(k).copied().unwrap_or(0));
     let margin = 0.5 * least_step(&data.x_f).unwrap_or(1.0);
     let (lo, hi) = extent(data.x_f.iter().copied())?;
-    let name = "coordinate along the networks, bladders [R j]";
+    let named = data.bladder.iter().any(|label| label.contains(':'));
+    let kind = if named { "BEAM:R j" } else { "R j" };
+    let name = format!("coordinate along the networks, bladders [{kind}]");
     let mut x = PictureAxis::new(name, "1", 10).between(lo - margin, hi + margin);
     let mut y = PictureAxis::new("pressure p", "Pa", 6).above(1e-3);
     let (low, high) = y.limits(data.pressure.iter().flatten().copied());

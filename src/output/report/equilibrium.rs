@@ -1,9 +1,8 @@
 //! The page of `equilibrium`: the path of states under growing loads.
 
-use std::path::Path;
-
 use serde_json::{Value, json};
 
+use super::placed::{self, thinned_nodes};
 use super::{FolderKind, Page, Place, base64, csv_table};
 use crate::error::Result;
 use crate::output::bands;
@@ -17,6 +16,9 @@ use crate::results::run::Status;
 const MOST_STATES: usize = 240;
 /// Largest number of nodes of a shape.
 const MOST_NODES: usize = 401;
+
+/// Largest number of beams of a structure whose tips have tiles.
+const MOST_BEAMS: usize = 4;
 
 /// Figures of the last state: label, quantity, unit, note.
 const TILES: [(&str, &str, &str, &str); 4] = [
@@ -62,21 +64,37 @@ pub fn data(place: &Place) -> Result<Page> {
         _ => ["Load factor", "at the end of the path; every stage before counts 1"],
     };
     let first = tile(label, ("", found.load_factor), "1", note);
+    let beams: Vec<&str> = place
+        .case
+        .iter()
+        .flat_map(|case| &case.beams)
+        .map(|beam| beam.name.as_str())
+        .collect();
+    let single = |(_, name, ..): &&(&str, &str, &str, &str)| beams.is_empty() || !name.starts_with("tip_");
     let others = TILES
         .iter()
+        .filter(single)
         .map(|(label, name, unit, note)| tile(label, (name, last(name)), unit, note));
+    let of_beams = beams.iter().take(MOST_BEAMS).flat_map(|beam| {
+        [("u₁", "u1_m"), ("u₃", "u3_m")].map(|(symbol, key)| {
+            let name = format!("{beam}.tip_{key}");
+            let note = format!("displacement in the axes of {beam} in the last state");
+            tile(&format!("Tip of {beam}, {symbol}"), (&name, last(&name)), "m", &note)
+        })
+    });
+    let of_beams: Vec<_> = of_beams.collect();
     let tone = if found.status == Status::Failed { "bad" } else { "good" };
     page.fill(json!({
-        "label": "Static equilibrium", "headlines": super::history::headlines(),
-        "status": {"word": found.status, "tone": tone, "reason": found.reason}, "answer": answer(&found, share),
+        "label": "Static equilibrium", "headlines": super::history::headlines(&beams),
+        "status": {"word": found.status, "tone": tone, "reason": found.reason}, "answer": answer(&found, share, if beams.is_empty() { "beam" } else { "structure" }),
         "facts": [
             counted(found.states as u64, "state"),
             counted(found.solver.newton_iterations, "Newton step"),
             format!("found in {}", duration(found.wall_s.total)),
         ],
-        "tiles": std::iter::once(first).chain(others).flatten().collect::<Vec<_>>(),
+        "tiles": std::iter::once(first).chain(of_beams).chain(others).flatten().collect::<Vec<_>>(),
         "events": found.events, "derivatives": found.sensitivities,
-        "path": csv_table::read(&place.path(CSV), |_| true), "shapes": shapes(&place.path(SHAPES)),
+        "path": csv_table::read(&place.path(CSV), |_| true), "shapes": shapes(place),
         "command": format!("slcbeam equilibrium {CASE}{} --at {at} --load-factor {share}", via(&found)),
     }));
     Ok(page)
@@ -93,7 +111,7 @@ fn via(found: &EquilibriumPath) -> String {
     }
 }
 
-fn answer(found: &EquilibriumPath, share: f64) -> String {
+fn answer(found: &EquilibriumPath, share: f64, thing: &str) -> String {
     let short = |x: f64| trimmed(&significant(x, 4));
     let loads = match found.via_s.last() {
         None => format!(
@@ -120,16 +138,17 @@ fn answer(found: &EquilibriumPath, share: f64) -> String {
         1 => "The path to it has one event, listed below.".to_string(),
         n => format!("The path to it has {n} events, listed below."),
     };
-    format!("Under {loads} the beam rests in the state shown; {stability}. {way}")
+    format!("Under {loads} the {thing} rests in the state shown; {stability}. {way}")
 }
 
 /// Positions of the nodes in some of the states, the last among them.
-fn shapes(path: &Path) -> Value {
+fn shapes(place: &Place) -> Value {
     let read = || -> csv::Result<Vec<Vec<f64>>> {
-        let mut reader = csv::Reader::from_reader(open(path)?);
-        let rows = reader
-            .records()
-            .map(|r| Ok(r?.iter().map(|x| x.parse().unwrap_or(f64::NAN)).collect()));
+        let mut reader = csv::Reader::from_reader(open(&place.path(SHAPES))?);
+        // rows of a structure begin with the name of the beam
+        let named = usize::from(reader.headers()?.get(0) == Some("beam"));
+        let row = |r: csv::StringRecord| r.iter().skip(named).map(|x| x.parse().unwrap_or(f64::NAN)).collect();
+        let rows = reader.records().map(|r| Ok(row(r?)));
         rows.collect()
     };
     let Ok(rows) = read() else { return Value::Null };
@@ -140,14 +159,21 @@ fn shapes(path: &Path) -> Value {
     let step = states.div_ceil(MOST_STATES);
     let mut kept: Vec<usize> = (0..states).rev().step_by(step).collect();
     kept.reverse();
-    let stride = rows.len().div_ceil(MOST_NODES);
-    let last = rows.len() - 1;
-    let nodes: Vec<usize> = (0..rows.len()).filter(|k| k % stride == 0 || *k == last).collect();
+    let placed = place.placed(rows.len());
+    let nodes = match &placed {
+        Some(_) => thinned_nodes(rows.len(), placed.as_ref(), MOST_NODES),
+        None => {
+            let (stride, last) = (rows.len().div_ceil(MOST_NODES), rows.len() - 1);
+            (0..rows.len()).filter(|k| k % stride == 0 || *k == last).collect()
+        }
+    };
     let along = |offset: usize| {
         let pairs = kept.iter().flat_map(|s| nodes.iter().map(move |k| (s, k)));
         base64::numbers(pairs.map(|(s, k)| rows[*k][1 + 2 * s + offset]))
     };
-    json!({
+    let mut page = json!({
         "states": kept, "theta": base64::numbers(nodes.iter().map(|&k| rows[k][0])), "x": along(0), "z": along(1),
-    })
+    });
+    placed::add(&mut page, placed.as_ref(), &nodes);
+    page
 }

@@ -6,7 +6,8 @@ use std::path::Path;
 use serde_json::{Value, json};
 
 use super::base64;
-use crate::discrete::quantities::BeamField;
+use super::placed::{self, thinned_nodes};
+use crate::discrete::quantities::{BeamField, PlacedNodes};
 use crate::output::arrays::TIMES;
 use crate::output::folder::damaged;
 use crate::output::npz::Npz;
@@ -38,7 +39,8 @@ pub fn read(path: &Path, frequency: Option<f64>) -> io::Result<Value> {
     if times.is_empty() || theta.is_empty() {
         return Ok(Value::Null);
     }
-    let nodes = thinned(theta.len(), MOST_NODES);
+    let placed = PlacedNodes::from_axes(|one| axis(one.name()).ok());
+    let nodes = thinned_nodes(theta.len(), placed.as_ref(), MOST_NODES);
     let groups = pressure_groups(&bladder);
     let a_frame = 4 * nodes.len() + groups.len();
     let most = (MOST_NUMBERS / a_frame).clamp(2, MOST_FRAMES);
@@ -46,9 +48,20 @@ pub fn read(path: &Path, frequency: Option<f64>) -> io::Result<Value> {
     let kept: Vec<f64> = chosen.iter().map(|&k| times[k]).collect();
     let alone: Vec<Vec<usize>> = nodes.iter().map(|&k| vec![k]).collect();
     // cells on both sides of each node
-    let last = theta.len().saturating_sub(2);
+    let parts = placed
+        .as_ref()
+        .map_or_else(|| std::iter::once(0..theta.len()).collect(), PlacedNodes::parts);
     let beside: Vec<Vec<usize>> = (nodes.iter())
-        .map(|&k| vec![k.saturating_sub(1).min(last), k.min(last)])
+        .map(|&k| {
+            let before = parts.partition_point(|part| part.end <= k);
+            // no cell lies between two parts
+            let (first, last) = (
+                parts[before].start - before,
+                (parts[before].end - before).saturating_sub(2),
+            );
+            let cell = k - before;
+            vec![cell.saturating_sub(1).clamp(first, last.max(first)), cell.min(last)]
+        })
         .collect();
     let mut field = |name: &str, groups: &[Vec<usize>]| -> io::Result<Value> {
         let Some(entry) = npz.entry(name) else {
@@ -66,7 +79,7 @@ pub fn read(path: &Path, frequency: Option<f64>) -> io::Result<Value> {
     };
     let (span, cycle) = plot::instants(&kept, frequency, CURVES);
     let first = |values: &[f64]| base64::numbers(groups.iter().map(|g| mean(g, values)));
-    Ok(json!({
+    let mut page = json!({
         "times": base64::numbers(kept.iter().copied()),
         "recorded": times.len(),
         "theta": base64::numbers(nodes.iter().map(|&k| theta[k])),
@@ -82,11 +95,13 @@ pub fn read(path: &Path, frequency: Option<f64>) -> io::Result<Value> {
         "x_f": first(&x_f),
         "bladder": first(&bladder),
         "array": first(&array),
-    }))
+    });
+    placed::add(&mut page, placed.as_ref(), &nodes);
+    Ok(page)
 }
 
 /// Indices `0..len` at constant steps, with the first and the last.
-fn thinned(len: usize, most: usize) -> Vec<usize> {
+pub fn thinned(len: usize, most: usize) -> Vec<usize> {
     let step = (len.saturating_sub(1)).div_ceil(most.max(2) - 1).max(1);
     let mut all: Vec<usize> = (0..len).step_by(step).collect();
     if all.last() != Some(&(len - 1)) {

@@ -3,6 +3,7 @@
 use serde_json::{Value, json};
 
 use super::base64;
+use crate::discrete::quantities::probes::tip_of_beam;
 use crate::discrete::quantities::{Group, Observable, QuantityRole};
 use crate::error::Result;
 use crate::output::envelope::{Envelope, HistorySource as Recorded, RowOrigin, each_row};
@@ -80,12 +81,30 @@ impl ReportHistory {
         if self.rows == 0 {
             return Value::Null;
         }
+        let first = self
+            .names
+            .iter()
+            .find_map(|(name, _)| tip_of_beam(name))
+            .map(|(beam, _)| beam);
         let columns = self.names.iter().zip(&self.columns).map(|((name, unit), values)| {
             let one = Observable::named(name);
+            // the tip of the observables is that of the first beam
+            let of_first = first.filter(|_| one.is_some_and(|one| one.group() == Group::Tip));
+            let group = match tip_of_beam(name) {
+                Some(_) => Group::Tip.title(),
+                None => one.map_or("More", |one| one.group().title()),
+            };
+            let label = match of_first {
+                Some(beam) => format!("{} of {beam}", one.map_or("", Observable::label)),
+                None => one.map_or_else(|| spoken(name), |one| one.label().into()),
+            };
+            let usual = match tip_of_beam(name) {
+                Some((_, what)) => ["u1", "u3"].contains(&what),
+                None => one.is_some_and(usual) && of_first.is_none(),
+            };
             let mut column = json!({
-                "name": name, "unit": unit, "group": one.map_or("More", |one| one.group().title()),
-                "label": one.map_or_else(|| spoken(name), |one| one.label().into()), "about": one.map_or("", Observable::about),
-                "usual": one.is_some_and(usual), "values": base64::numbers(values.iter().copied()),
+                "name": name, "unit": unit, "group": group, "label": label, "about": one.map_or("", Observable::about),
+                "usual": usual, "values": base64::numbers(values.iter().copied()),
             });
             if let Some(widths) = band.column_widths(name) {
                 column["widths"] = base64::numbers(widths.into_iter().map(|(_, width)| width));
@@ -112,6 +131,10 @@ impl ReportHistory {
 
 /// A column name as text; `__1` in a name is the number of a lower bladder.
 fn spoken(name: &str) -> String {
+    if let Some((beam, what)) = tip_of_beam(name) {
+        let what = what.replace("u1", "u₁").replace("u3", "u₃");
+        return format!("{beam} tip {what}");
+    }
     name.replace("__", " −").replace('_', " ")
 }
 
@@ -120,11 +143,18 @@ fn usual(one: Observable) -> bool {
     one.role() == QuantityRole::Headline || one.group() == Group::Pressure
 }
 
-/// Labels of the headline quantities, by name.
-pub fn headlines() -> Value {
+/// Labels of the headline quantities, by name; of a structure with the tips of these beams.
+pub fn headlines(beams: &[&str]) -> Value {
     let all = Observable::ALL
         .iter()
-        .filter(|one| one.role() == QuantityRole::Headline);
+        .filter(|one| one.role() == QuantityRole::Headline && (beams.is_empty() || one.group() != Group::Tip));
     let labelled = all.map(|one| (one.name().to_string(), one.label().into()));
-    Value::Object(labelled.collect())
+    let tips = beams
+        .iter()
+        .flat_map(|beam| ["u1", "u3"].map(|axis| format!("{beam}.tip_{axis}")));
+    let of_beams = tips.map(|name| {
+        let label = spoken(&name).into();
+        (name, label)
+    });
+    Value::Object(of_beams.chain(labelled).collect())
 }

@@ -44,11 +44,13 @@ mod optimum;
 mod page;
 mod parameters;
 mod per_cycle;
+mod placed;
 mod response;
 mod run;
 mod scene;
 mod sense;
 mod signals;
+mod structure;
 mod studies;
 mod warnings;
 

@@ -5,7 +5,8 @@ use std::path::Path;
 
 use serde_json::{Map, Value, json};
 
-use super::{FolderKind, Page, Place, base64, capital, csv_table};
+use super::{FolderKind, Page, Place, base64, capital, csv_table, placed};
+use crate::discrete::quantities::{FieldAxis, PlacedNodes};
 use crate::error::Result;
 use crate::output::bands;
 use crate::output::folder::CASE;
@@ -115,6 +116,11 @@ fn shapes(path: &Path) -> io::Result<Value> {
     };
     let mut all = Map::new();
     let (nodes, theta) = read("theta_m")?;
+    let placed = PlacedNodes::from_axes(|axis| match axis {
+        FieldAxis::Nodes => Some(theta.clone()),
+        axis => read(axis.name()).ok().map(|(_, values)| values),
+    });
+    let chosen: Vec<usize> = (0..theta.len()).collect();
     all.insert("theta_m".into(), base64::numbers(theta));
     // A dry beam has no bladders.
     let bladders = read("pressure_amplitude_pa")
@@ -131,5 +137,7 @@ fn shapes(path: &Path) -> io::Result<Value> {
     }
     all.insert("bladders".into(), json!(bladders));
     all.insert("most".into(), json!(most.max(1)));
-    Ok(Value::Object(all))
+    let mut all = Value::Object(all);
+    placed::add(&mut all, placed.as_ref(), &chosen);
+    Ok(all)
 }

@@ -12,7 +12,7 @@ const STYLES: [&str; 4] = [
 ];
 
 /// Scripts in the order of execution: each uses those before it.
-const SCRIPTS: [&str; 18] = [
+const SCRIPTS: [&str; 19] = [
     include_str!("page/base.js"),
     include_str!("page/colour.js"),
     include_str!("page/clock.js"),
@@ -20,6 +20,7 @@ const SCRIPTS: [&str; 18] = [
     include_str!("page/wires.js"),
     include_str!("page/scene.js"),
     include_str!("page/beam.js"),
+    include_str!("page/structure.js"),
     include_str!("page/animation.js"),
     include_str!("page/profiles.js"),
     include_str!("page/maps.js"),

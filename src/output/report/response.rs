@@ -2,7 +2,7 @@
 
 use serde_json::{Value, json};
 
-use super::{FolderKind, Page, Place, StoredResult, base64};
+use super::{FolderKind, Page, Place, StoredResult, base64, placed};
 use crate::error::Result;
 use crate::output::folder::CASE;
 use crate::output::numbers::{counted, significant};
@@ -36,7 +36,7 @@ pub fn data(place: &Place) -> Result<Page> {
         ),
     );
     page.put("curves", curves(&found));
-    page.put("shapes", found.shapes.as_ref().map(shapes));
+    page.put("shapes", found.shapes.as_ref().map(|found| shapes(found, place)));
     let mut figures = vec![json!({
         "title": "In the complex plane",
         "picture": place.picture(NYQUIST),
@@ -102,7 +102,7 @@ fn curves(found: &ResponseRecord) -> Value {
 }
 
 /// Amplitudes and phases of the shapes, as those of modes.
-fn shapes(found: &ResponseShapes) -> Value {
+fn shapes(found: &ResponseShapes, place: &Place) -> Value {
     type Part = fn(&ResponseShape) -> &[Vec<f64>; 2];
     let all = |of: Part, value: fn(f64, f64) -> f64| {
         let one = |shape| {
@@ -113,6 +113,8 @@ fn shapes(found: &ResponseShapes) -> Value {
     };
     let mut page = json!({"theta_m": base64::numbers(found.theta_m.iter().copied()), "most": found.at.len(),
                           "hz": found.at.iter().map(|shape| shape.frequency_hz).collect::<Vec<_>>()});
+    let chosen: Vec<usize> = (0..found.theta_m.len()).collect();
+    placed::add(&mut page, place.placed(chosen.len()).as_ref(), &chosen);
     let parts: [(&str, &str, Part); 3] = [
         ("u1", "m", |shape| &shape.u1),
         ("u3", "m", |shape| &shape.u3),

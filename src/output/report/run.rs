@@ -18,7 +18,7 @@ use crate::output::numbers::{counted, duration, error_percent, percent, quantity
 use crate::output::periodic::CYCLE;
 use crate::output::summary;
 use crate::results::cycles::CycleResult;
-use crate::results::run::{Status, Summary};
+use crate::results::run::{Quantity, Status, Summary};
 
 /// Displacements below this [m] are round-off.
 const ROUND_OFF: f64 = 1e-14;
@@ -150,6 +150,14 @@ fn time(t: f64) -> String {
 
 /// Sentence about the displacement of the tip.
 fn answer(summary: &Summary) -> Option<String> {
+    let beams: Vec<String> = summary
+        .beams()
+        .take(MOST_BEAMS)
+        .filter_map(|beam| of_beam(summary, beam))
+        .collect();
+    if !beams.is_empty() {
+        return Some(beams.join(" "));
+    }
     let one = Interest::TipU1;
     let found = summary.quantity(one.name())?;
     let (last, largest) = (settled(found.last?), settled(found.largest()?));
@@ -161,6 +169,23 @@ fn answer(summary: &Summary) -> Option<String> {
         at.unwrap_or_default()
     ))
 }
+
+/// Sentence about the displacement of the tip of a beam of a structure.
+fn of_beam(summary: &Summary, beam: &str) -> Option<String> {
+    let [u1, u3] = ["u1", "u3"].map(|axis| summary.probes.get(&format!("{beam}.tip_{axis}_m")));
+    let (u1, u3) = (u1?, u3?);
+    let shown = |value: Option<f64>| Some(quantity(settled(value?), "m", 3));
+    Some(format!(
+        "Tip of {beam} at the end: u₁ {}, u₃ {}; largest {}, {}.",
+        shown(u1.last)?,
+        shown(u3.last)?,
+        shown(u1.largest())?,
+        shown(u3.largest())?
+    ))
+}
+
+/// Largest number of beams of a structure whose tips are in sentence and tiles.
+const MOST_BEAMS: usize = 4;
 
 /// Text of a tile, and of its band.
 type Shown = (String, Option<String>);
@@ -207,7 +232,28 @@ fn tiles(summary: &Summary) -> Vec<Value> {
         (Interest::TipU3, "Tip, along", "largest displacement u₃"),
         (Interest::TipAngle, "Turn of the tip", "largest slope angle"),
     ];
-    for (one, label, words) in tip {
+    let beams: Vec<&str> = summary.beams().take(MOST_BEAMS).collect();
+    for beam in &beams {
+        for (symbol, key, unit) in [("u₁", "u1_m", "m"), ("u₃", "u3_m", "m")] {
+            let name = format!("{beam}.tip_{key}");
+            let found = summary.probes.get(&name);
+            let value = found.and_then(Quantity::largest).map(settled);
+            let shown = value.map(|value| figure(summary, (&name, &LARGEST), value, unit));
+            let at = found
+                .and_then(|found| found.max_abs_at_s)
+                .map(|t| format!(", at {}", time(t)));
+            let end = found
+                .and_then(|found| found.last)
+                .map(|x| format!("; {} at the end", quantity(settled(x), unit, 3)));
+            let note = format!(
+                "largest displacement {symbol} in the axes of {beam}{}{}",
+                at.unwrap_or_default(),
+                end.unwrap_or_default()
+            );
+            tile(&format!("Tip of {beam}, {symbol}"), shown, &note);
+        }
+    }
+    for (one, label, words) in tip.into_iter().filter(|_| beams.is_empty()) {
         let value = most(one.name(), one.unit());
         tile(label, value, &format!("{words}{}", when_and_end(summary, one)));
     }

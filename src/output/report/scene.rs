@@ -3,6 +3,7 @@
 use serde_json::{Value, json};
 
 use super::signals::{describe, is_zero, peak};
+use super::structure;
 use crate::case::schema::{AccumulatorKind, BladderEnd, Bladders, ChainEnd, Load, Rectifier};
 use crate::case::spans;
 use crate::case::wiring::{PortQuantity, Wiring, WiringPoint, WiringTube};
@@ -32,7 +33,7 @@ pub fn to_json(case: &Case) -> Option<Value> {
         graded.then(|| all.collect::<Vec<_>>())
     };
     let volume = |b: &Bladders| format!("{} ml", significant(b.length_m * b.height_m * b.width_m * 1e6, 3));
-    Some(json!({
+    let mut scene = json!({
         "length": beam.length_m,
         "borders": graded.then(|| spans::segment_ends(case)),
         "height": height,
@@ -60,7 +61,11 @@ pub fn to_json(case: &Case) -> Option<Value> {
         "ends": [end(&case.ends.root.resolve(), case.ends.root.form().0, end_s), end(&case.ends.tip.resolve(), case.ends.tip.form().0, end_s)],
         "loads": case.loads.iter().map(|l| load(l, end_s)).collect::<Vec<_>>(),
         "obstacles": ContactLaw::all(case, &segments).iter().map(obstacle).collect::<Vec<_>>(),
-    }))
+    });
+    if case.is_structure() {
+        structure::add(&mut scene, case);
+    }
+    Some(scene)
 }
 
 /// A wall or a circle: its face and its description.
@@ -91,7 +96,7 @@ fn obstacle(law: &ContactLaw) -> Value {
     }
 }
 
-fn q(x: f64, unit: &str) -> String {
+pub fn q(x: f64, unit: &str) -> String {
     trimmed(&quantity(x, unit, 3))
 }
 
@@ -215,7 +220,7 @@ fn largest(signal: &Signal, end_s: f64) -> f64 {
 }
 
 /// An end: its form, constraints, prescribed motions and loads.
-fn end(resolved: &ResolvedEnd, form: &str, end_s: f64) -> Value {
+pub fn end(resolved: &ResolvedEnd, form: &str, end_s: f64) -> Value {
     let driven = |signal: &Signal, unit: &str| (!is_zero(signal)).then(|| describe(signal, unit));
     let motion = |t: &Translation| match t {
         Translation::Displacement(s) => driven(s, "m"),
@@ -249,7 +254,7 @@ fn end(resolved: &ResolvedEnd, form: &str, end_s: f64) -> Value {
 }
 
 /// A load with its shape along the beam, scaled to 1.
-fn load(load: &Load, end_s: f64) -> Value {
+pub fn load(load: &Load, end_s: f64) -> Value {
     let Some((name, distributed)) = load.distributed() else {
         let Load::Gravity { x_m_s2, z_m_s2 } = load else {
             return Value::Null;

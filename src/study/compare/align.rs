@@ -15,8 +15,8 @@ pub fn axis_of(name: &str) -> FieldAxis {
 }
 
 /// Positions of a field. Positions along the beam are relative to its length, so that beams of different length can be
-/// compared. Positions along the network are divided into pieces, one per connected array, across which nothing is
-/// interpolated.
+/// compared. Positions along the network are divided into pieces, one per connected array, and those of a structure into
+/// its beams; nothing is interpolated across pieces.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FieldPositions {
     /// Positions.
@@ -36,10 +36,18 @@ impl FieldPositions {
         let length = if rough { 1.0 } else { recording.length() };
         let x: Vec<f64> = raw.iter().map(|x| x / length).collect();
         let number = recording.axis(FieldAxis::Array.name()).filter(|_| rough);
+        let of_beam = match axis {
+            FieldAxis::Cells => recording.axis(FieldAxis::BeamOfCell.name()),
+            FieldAxis::Nodes => recording.axis(FieldAxis::BeamOfNode.name()),
+            _ => None,
+        };
+        let number = number.or(of_beam.filter(|beam| beam.len() == x.len()));
         let mut pieces = vec![];
         let mut begin = 0;
         for k in 1..=x.len() {
-            if k == x.len() || number.is_some_and(|n| n[k] != n[begin]) {
+            // parts of a beam between joints meet in two nodes at one place
+            let parted = |n: &[f64]| n[k] != n[begin] || (!rough && x[k] <= x[k - 1]);
+            if k == x.len() || number.is_some_and(parted) {
                 pieces.push(begin..k);
                 begin = k;
             }

@@ -4,6 +4,7 @@ use serde::Deserialize;
 use serde_json::Value;
 
 use crate::case::schema::Thinning;
+use crate::case::wiring::BladderLabels;
 use crate::run::schedule::SAME;
 use crate::run::summary::Summary;
 
@@ -120,6 +121,17 @@ impl Recording {
     /// Length of the beam [m], the reference of positions along it.
     pub fn length(&self) -> f64 {
         self.known.beam.length_m
+    }
+
+    /// Labels of beams and bladders.
+    pub fn labels(&self) -> BladderLabels {
+        let beams = self.case["beams"].as_array().into_iter().flatten();
+        let beam = |beam: &Value| {
+            let name = beam["name"].as_str().unwrap_or_default().to_owned();
+            (name, beam["segments"].as_u64().unwrap_or(1) as usize)
+        };
+        let per_row = self.case["bladders"]["per_row"].as_u64().unwrap_or(0) as usize;
+        BladderLabels::new(per_row, beams.map(beam))
     }
 
     /// Length of the bladders [m]; `None` for a dry beam.

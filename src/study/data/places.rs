@@ -31,6 +31,9 @@ pub fn parse_place(case: &Case, quantity: &str, place: &str) -> Result<QuantityA
         probe,
     };
     let place = place.trim();
+    if case.is_structure() {
+        return in_structure(case, quantity, place).map_err(wrong);
+    }
     if place == "tip" || case.probes.iter().any(|probe| probe.name == place) {
         return Ok(placed(place, None));
     }
@@ -55,6 +58,37 @@ pub fn parse_place(case: &Case, quantity: &str, place: &str) -> Result<QuantityA
                 "the case has no place {place}{meant}. Expected {WANTED}"
             )))
         }
+    }
+}
+
+/// Returns the column of a quantity at a place of a structure, which has no place without the name of a beam.
+fn in_structure(case: &Case, quantity: &str, place: &str) -> std::result::Result<QuantityAtPlace, String> {
+    let kind = place.split_once(char::is_whitespace);
+    let column = |begin: &str| QuantityAtPlace {
+        name: format!("{begin}_{quantity}"),
+        probe: None,
+    };
+    if let Some((kind, name)) = kind.filter(|(kind, _)| ["port", "accumulator", "contact"].contains(kind)) {
+        return Ok(column(&stations::begin(kind, name.trim())));
+    }
+    let places: Vec<String> = case
+        .beams
+        .iter()
+        .flat_map(|beam| {
+            let probes = beam.probes.iter().map(|probe| probe.name.as_str());
+            ["tip"]
+                .into_iter()
+                .chain(probes)
+                .map(|place| format!("{}.{place}", beam.name))
+        })
+        .collect();
+    match places.iter().any(|known| known == place) {
+        true => Ok(column(place)),
+        false => Err(format!(
+            "the case is a structure without the place {place}. Places are {}, `port NAME`, `accumulator NAME` and `contact NAME`; \
+             probes of its beams add others",
+            places.join(", ")
+        )),
     }
 }
 

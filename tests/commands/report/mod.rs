@@ -5,3 +5,4 @@ mod common;
 mod folders;
 mod kinds;
 mod run;
+mod structure;

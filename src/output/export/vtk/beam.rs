@@ -6,11 +6,13 @@ use super::surface::{Data, Surface};
 
 /// Surface of the beam. Points have the data of their section's center, quadrilaterals those of their beam cell; `field` returns a recorded
 /// field at the instant.
+/// `turn` is the angle from z towards x of the straight beam [rad].
 pub(super) fn surface<'a>(
     cutout: &Cutout,
     curve: &Curve,
     sections: &[SectionPosition],
     field: &dyn Fn(&str) -> &'a [f64],
+    turn: f64,
 ) -> Surface {
     let force = field("normal_force_n");
     let heights = cutout.heights();
@@ -60,7 +62,9 @@ pub(super) fn surface<'a>(
     };
     let vector = |axial: &str, transverse: &str| -> Vec<f64> {
         let both = each(axial).into_iter().zip(each(transverse));
-        both.flat_map(|(a, t)| [a, t, 0.0]).collect()
+        let (sin, cos) = turn.sin_cos();
+        both.flat_map(|(a, t)| [a * cos - t * sin, t * cos + a * sin, 0.0])
+            .collect()
     };
     out.of_points = vec![
         Data::vector("u_m", vector("u3_m", "u1_m")),
@@ -88,7 +92,7 @@ fn reveals(
     if depths[0] - depths[1] <= apart {
         return;
     }
-    for window in &cutout.windows {
+    for window in cutout.windows.iter().filter(|window| window[0] < window[1]) {
         let within = |k: &usize| (window[0] - apart..=window[1] + apart).contains(&sections[*k].theta);
         let along: Vec<usize> = (0..sections.len()).filter(within).collect();
         let last = along.len() - 1;

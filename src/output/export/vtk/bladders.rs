@@ -65,7 +65,9 @@ pub(super) fn surface(
     let mut out = Surface::default();
     let mut owners: Vec<(usize, usize)> = vec![];
     for (number, bladder) in layout.bladders.iter().enumerate() {
-        let window = cutout.windows[bladder.label.unsigned_abs() as usize - 1];
+        let Some(window) = cutout.window(bladder.label) else {
+            continue;
+        };
         let apart = 1e-9 * cutout.length;
         let within = |s: &&SectionPosition| s.theta >= window[0] - apart && s.theta <= window[1] + apart;
         let along: Vec<&SectionPosition> = sections.iter().filter(within).collect();

@@ -2,6 +2,8 @@
 
 use std::f64::consts::{PI, TAU};
 
+use crate::numerics::Planar;
+
 /// A cross-section: position of its center (x, z) [m] and slope angle.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct SectionPosition {
@@ -62,6 +64,19 @@ impl Curve {
             };
         }
         Self { nodes }
+    }
+
+    /// The curve in the axes of the case, of a beam with its root at `origin` and an angle from z towards x [rad].
+    pub fn placed(mut self, origin: Planar<f64>, angle: f64) -> Self {
+        let z = Planar::tangent(angle);
+        for node in &mut self.nodes {
+            (node.x, node.z) = (
+                origin.x + node.x * z.z + node.z * z.x,
+                origin.z + node.z * z.z - node.x * z.x,
+            );
+            node.angle += angle;
+        }
+        self
     }
 
     /// Sections at material coordinates [m], linear between nodes.

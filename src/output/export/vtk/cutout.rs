@@ -1,5 +1,6 @@
 //! Positions of the bladders in the beam: two rows, with walls of equal thickness above, between and below them.
 
+use crate::case::structure::Piece;
 use crate::case::{Case, spans};
 
 /// Dimensions of the beam and of its cutouts.
@@ -13,10 +14,12 @@ pub(super) struct Cutout {
     pub half_across: f64,
     /// Lower and upper edge of the upper row [m]; the lower row mirrors it.
     pub row: [f64; 2],
-    /// Start and end of each segment's bladders along the beam [m]; empty for a dry beam.
+    /// Start and end of each segment's bladders along the beam [m], equal without bladders; empty for a dry beam.
     pub windows: Vec<[f64; 2]>,
     /// Length of the beam [m].
     pub length: f64,
+    /// First of its segments among those of a structure.
+    pub first: usize,
 }
 
 impl Cutout {
@@ -43,14 +46,48 @@ impl Cutout {
                 })
                 .collect(),
             length: beam.length_m,
+            first: 0,
         }
+    }
+
+    /// Cutout of a part of a structure, with the sizes of its first segment.
+    pub fn of_part(case: &Case, piece: &Piece) -> Self {
+        let mut own = piece.case(case);
+        if let Some(first) = spans::segments(&own).into_iter().next() {
+            own.beam.height_m = first.beam.height_m;
+            own.beam.width_m = first.beam.width_m;
+            if let (Some(bladders), Some([upper, _])) = (&mut own.bladders, first.bladders) {
+                (bladders.height_m, bladders.width_m) = (upper.height_m, upper.width_m);
+            }
+        }
+        let mut cutout = Self::new(&own);
+        let (there, per_row) = (spans::bladders(&own), cutout.windows.len());
+        for (k, window) in cutout.windows.iter_mut().enumerate() {
+            if !there(k) && !there(per_row + k) {
+                window[1] = window[0];
+            }
+            *window = window.map(|edge| edge + piece.from);
+        }
+        cutout.first = piece.segments[0];
+        cutout
+    }
+
+    /// Window of a bladder `R j`, if the part has its segment.
+    pub fn window(&self, label: i64) -> Option<[f64; 2]> {
+        let segment = (label.unsigned_abs() as usize).checked_sub(1 + self.first)?;
+        self.windows.get(segment).copied()
     }
 
     /// Coordinates of nodes and window edges, ascending.
     pub fn stations(&self, nodes: &[f64]) -> Vec<f64> {
         // An edge that differs from a node only by round-off is that node.
         let apart = 1e-9 * self.length;
-        let edges = self.windows.iter().flatten().copied();
+        let edges = self
+            .windows
+            .iter()
+            .filter(|window| window[0] < window[1])
+            .flatten()
+            .copied();
         let mut all: Vec<f64> = nodes.to_vec();
         all.extend(edges.filter(|e| nodes.iter().all(|n| (n - e).abs() > apart)));
         all.sort_by(f64::total_cmp);

@@ -10,7 +10,7 @@
 //! ```
 //!
 //! VTK's axes: X along the straight beam (the model's z), Y the deflection (the model's x), Z across the width. In ParaView's initial view
-//! the beam lies on its side and bends up and down.
+//! the beam lies on its side and bends up and down. Beams of a structure are at their places, with their numbers in `/beams` as data.
 
 mod beam;
 mod bladders;
@@ -20,21 +20,25 @@ mod surface;
 mod tubes;
 
 use std::fs;
+use std::ops::Range;
 use std::path::Path;
 
 use super::ExportedFiles;
 use super::staged_folder::StagedFolder;
 use crate::case::Case;
+use crate::case::structure::{self, Piece};
 use crate::discrete::System;
+use crate::discrete::quantities::{BeamField, FieldAxis, PlacedNodes};
 use crate::error::Result;
 use crate::model::Model;
+use crate::numerics::Planar;
 use crate::output::folder::{CASE, FIELDS, VTK, damaged, fault};
 use crate::output::numbers::shortest;
 use crate::run::observe::Observer;
 use crate::study::compare::Recording;
 use curve::Curve;
 use cutout::Cutout;
-use surface::Surface;
+use surface::{Data, Surface};
 
 /// Parts of the drawing, each one file per instant.
 const PARTS: [&str; 3] = ["beam", "bladders", "tubes"];
@@ -112,45 +116,111 @@ fn put(path: &Path, bytes: &[u8]) -> Result<u64> {
     Ok(bytes.len() as u64)
 }
 
+/// A single beam, or a part of a structure.
+struct ScenePart {
+    cutout: Cutout,
+    stations: Vec<f64>,
+    /// Its nodes and its cells in the recorded fields.
+    nodes: Range<usize>,
+    cells: Range<usize>,
+    /// Root and angle of its beam, and the number of the beam from 1; none for a single beam.
+    place: Option<(Planar<f64>, f64, i32)>,
+}
+
 /// Data that do not move: sizes, windows, positions of bladders, ends of tubes.
 struct Scene<'a> {
     from: &'a Recording,
-    cutout: Cutout,
-    stations: Vec<f64>,
+    parts: Vec<ScenePart>,
     wet: Option<(bladders::CutoutLayout, Vec<tubes::TubeArc>)>,
+}
+
+impl ScenePart {
+    /// The beam of a case, or the parts of its structure, with the coordinates of all nodes.
+    fn all(case: &Case, theta: &[f64], placed: Option<&PlacedNodes>) -> Vec<Self> {
+        let part = |cutout: Cutout, nodes: Range<usize>, before: usize, place| Self {
+            stations: cutout.stations(&theta[nodes.clone()]),
+            cells: nodes.start - before..(nodes.end - before).saturating_sub(1),
+            cutout,
+            nodes,
+            place,
+        };
+        let Some(placed) = placed else {
+            return vec![part(Cutout::new(case), 0..theta.len(), 0, None)];
+        };
+        let pieces = structure::pieces(case).0;
+        let each = pieces.iter().zip(placed.parts()).enumerate();
+        let of = |(k, (piece, nodes)): (usize, (&Piece, Range<usize>))| {
+            let root = piece.origin - piece.direction() * piece.from;
+            let place = (root, piece.angle, piece.beam as i32 + 1);
+            part(Cutout::of_part(case, piece), nodes, k, Some(place))
+        };
+        each.map(of).collect()
+    }
+
+    /// Values of a recorded field on the part.
+    fn values<'a>(&self, name: &str, row: &'a [f64]) -> &'a [f64] {
+        let range = match BeamField::named(name).map(BeamField::axis) {
+            Some(FieldAxis::Cells) => &self.cells,
+            _ => &self.nodes,
+        };
+        row.get(range.clone()).unwrap_or_default()
+    }
 }
 
 impl<'a> Scene<'a> {
     fn new(case: &Case, from: &'a Recording) -> Result<Self> {
-        let cutout = Cutout::new(case);
-        let stations = cutout.stations(from.axis("theta_node_m").unwrap_or_default());
+        let placed = PlacedNodes::from_axes(|axis| from.axis(axis.name()).map(<[f64]>::to_vec));
+        let theta = from.axis(FieldAxis::Nodes.name()).unwrap_or_default();
+        let parts = ScenePart::all(case, theta, placed.as_ref());
         let model = Model::new(case)?;
         let wet = model.wet.as_ref().zip(from.axis("bladder")).map(|(wet, labels)| {
             let layout = bladders::CutoutLayout::new(wet, labels);
-            let tubes = tubes::all(case, wet, &cutout, &layout);
+            let cutouts: Vec<&Cutout> = parts.iter().map(|part| &part.cutout).collect();
+            let tubes = tubes::all(case, wet, &cutouts, &layout);
             (layout, tubes)
         });
-        Ok(Self {
-            from,
-            cutout,
-            stations,
-            wet,
-        })
+        Ok(Self { from, parts, wet })
     }
 
     /// Parts at an instant, in the order of [`PARTS`]; a dry beam has only the first.
     fn at(&self, instant: usize) -> Vec<Surface> {
         let row = |name: &str| self.from.field(name).map_or(&[][..], |f| f.row(instant));
-        let theta = self.from.axis("theta_node_m").unwrap_or_default();
-        let angles = row("section_angle_rad");
-        let curve = Curve::new(theta, row("u1_m"), row("u3_m"), row("curvature_1_m"), angles);
-        let sections = curve.sections(&self.stations);
-        let mut parts = vec![beam::surface(&self.cutout, &curve, &sections, &row)];
-        if let Some((layout, tubes)) = &self.wet {
-            let (pressure, area) = (row("pressure_pa"), row("area_change_m2"));
-            parts.push(bladders::surface(&self.cutout, layout, &sections, pressure, area));
-            parts.push(tubes::lines(tubes, &curve, pressure));
+        let theta = self.from.axis(FieldAxis::Nodes.name()).unwrap_or_default();
+        let (pressure, area) = (row("pressure_pa"), row("area_change_m2"));
+        let (mut beams, mut boxes, mut curves) = (Surface::default(), Surface::default(), vec![]);
+        for part in &self.parts {
+            let own = |name: &str| part.values(name, row(name));
+            let angles = own("section_angle_rad");
+            let line = Curve::new(
+                &theta[part.nodes.clone()],
+                own("u1_m"),
+                own("u3_m"),
+                own("curvature_1_m"),
+                angles,
+            );
+            let (curve, turn) = match part.place {
+                None => (line, 0.0),
+                Some((root, angle, _)) => (line.placed(root, angle), angle),
+            };
+            let sections = curve.sections(&part.stations);
+            let numbered = |mut surface: Surface| {
+                if let Some((.., beam)) = part.place {
+                    let cells = surface.lines.len() + surface.quads.len();
+                    surface.of_cells.push(Data::number("beam", vec![beam; cells]));
+                }
+                surface
+            };
+            beams.append(numbered(beam::surface(&part.cutout, &curve, &sections, &own, turn)));
+            if let Some((layout, _)) = &self.wet {
+                let own = bladders::surface(&part.cutout, layout, &sections, pressure, area);
+                boxes.append(numbered(own));
+            }
+            curves.push(curve);
         }
-        parts
+        let mut all = vec![beams];
+        if let Some((_, tubes)) = &self.wet {
+            all.extend([boxes, tubes::lines(tubes, &curves, pressure)]);
+        }
+        all
     }
 }

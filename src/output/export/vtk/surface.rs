@@ -116,6 +116,29 @@ impl Appended {
 }
 
 impl Surface {
+    /// Adds the points, cells and data of another surface with the same data.
+    pub fn append(&mut self, other: Self) {
+        let first = self.points.len();
+        if self.of_points.is_empty() && self.of_cells.is_empty() {
+            *self = other;
+            return;
+        }
+        self.points.extend(other.points);
+        let lines = other.lines.into_iter();
+        self.lines
+            .extend(lines.map(|line| line.into_iter().map(|p| p + first).collect()));
+        self.quads
+            .extend(other.quads.into_iter().map(|quad| quad.map(|p| p + first)));
+        let own = self.of_points.iter_mut().chain(&mut self.of_cells);
+        for (own, other) in own.zip(other.of_points.into_iter().chain(other.of_cells)) {
+            match (&mut own.values, other.values) {
+                (SurfaceValues::Double(own), SurfaceValues::Double(other)) => own.extend(other),
+                (SurfaceValues::Whole(own), SurfaceValues::Whole(other)) => own.extend(other),
+                _ => {}
+            }
+        }
+    }
+
     /// Content of the file for the time `t` [s].
     pub fn file(&self, t: f64) -> Vec<u8> {
         let mut appended = Appended::default();

@@ -7,6 +7,7 @@ function unpackMotion(m) {
   for (const key of ["times", "theta", "u1", "u3", "curvature", "angle", "pressure", "x_f", "bladder", "array"]) out[key] = floats(m[key]);
   out.frames = out.times.length;
   out.nodes = out.theta.length;
+  out.placed = placeNodes(m.placed, data.scene);
   out.cells = out.pressure ? out.pressure.length / out.frames : 0;
   if (out.cells && data.scene?.bladders) {
     const half = data.scene.bladders.per_row;
@@ -70,6 +71,8 @@ function showAnimation(host, scene, motion, clock) {
   const still = tiny <= 1e-9 * scene.length;
   const alongSize = largest(motion.u3);
   if (still && !moves) factor.along = roundFactor(alongSize, scene.length);
+  // In a structure both directions are drawn with one factor, so that joined beams stay together.
+  if (motion.placed) factor.across = factor.along = roundFactor(Math.max(tiny, alongSize), scene.length);
   let follow = false;
   const canvas = el("canvas", { role: "img", "aria-label": "The moving beam, seen from the side" });
   const note = el("p", { class: "caption" });
@@ -81,11 +84,15 @@ function showAnimation(host, scene, motion, clock) {
     const g = Math.min(f + 1, motion.frames - 1);
     const [s, t] = [shift(f), shift(g)];
     const mix = (v, from, to) => Float64Array.from({ length: n }, (_, k) => (v[f * n + k] - from) * (1 - w) + (v[g * n + k] - to) * w);
-    return curveOf(motion.theta, mix(motion.u1, s[0], t[0]), mix(motion.u3, s[1], t[1]), factor, motion.angle ? mix(motion.angle, 0, 0) : null);
+    return curveOf(motion.theta, mix(motion.u1, s[0], t[0]), mix(motion.u3, s[1], t[1]), factor, motion.angle ? mix(motion.angle, 0, 0) : null, motion.placed);
   };
   const prepare = () => {
-    const bounds = { x0: 0, x1: scene.length, y0: 0, y1: 0 };
-    for (let f = 0; f < motion.frames; f++) {
+    const bounds = straightBounds(scene);
+    for (let f = 0; motion.placed && f < motion.frames; f++) {
+      const curve = shape(f, 0);
+      for (let k = 0; k < curve.n; k++) widen(bounds, curve.x[k], curve.y[k]);
+    }
+    for (let f = 0; !motion.placed && f < motion.frames; f++) {
       const [s1, s3] = shift(f);
       for (let k = 0; k < motion.nodes; k++) {
         widen(bounds, motion.theta[k] + (motion.u3[f * motion.nodes + k] - s3) * factor.along, (motion.u1[f * motion.nodes + k] - s1) * factor.across);
@@ -113,10 +120,11 @@ function showAnimation(host, scene, motion, clock) {
       paintShade(ctx, view, shape(f, 0), scene);
     }
     const parts = [];
-    if (factor.across !== 1) parts.push(`deflection across drawn ${count(factor.across)} times larger`);
-    if (factor.along !== 1) parts.push(`displacement along drawn ${count(factor.along)} times larger`);
+    if (motion.placed) parts.push(...(factor.across === 1 ? [] : [`displacements drawn ${count(factor.across)} times larger`]));
+    else if (factor.across !== 1) parts.push(`deflection across drawn ${count(factor.across)} times larger`);
+    if (!motion.placed && factor.along !== 1) parts.push(`displacement along drawn ${count(factor.along)} times larger`);
     const truth = parts.length ? `${parts.join(", ")}; everything else to scale.` : "To scale, nothing exaggerated.";
-    note.textContent = `${truth[0].toUpperCase()}${truth.slice(1)} The faint shade is everywhere the beam goes during the whole motion, the stronger the more often.${layout.bladders.length ? " Cells: bladders, coloured by their pressure; lines: tubes, coloured by network." : ""}`;
+    note.textContent = `${truth[0].toUpperCase()}${truth.slice(1)} The faint shade is everywhere the ${motion.placed ? "structure" : "beam"} goes during the whole motion, the stronger the more often.${layout.bladders.length ? " Cells: bladders, coloured by their pressure; lines: tubes, coloured by network." : ""}`;
   };
   const scale = motion.pressureScale;
   const paint = () =>
@@ -137,9 +145,10 @@ function showAnimation(host, scene, motion, clock) {
     paint();
   };
   const controls = el("div", { class: "controls" });
-  if (!still) controls.append(factorControl("Exaggerate across", factor.across, (x) => ((factor.across = x), again())));
-  if (factor.along !== 1 || (alongSize > 0 && alongSize < 0.02 * scene.length)) controls.append(factorControl("Exaggerate along", factor.along, (x) => ((factor.along = x), again())));
-  if (moves) {
+  if (motion.placed) controls.append(factorControl("Exaggerate", factor.across, (x) => ((factor.across = factor.along = x), again())));
+  else if (!still) controls.append(factorControl("Exaggerate across", factor.across, (x) => ((factor.across = x), again())));
+  if (!motion.placed && (factor.along !== 1 || (alongSize > 0 && alongSize < 0.02 * scene.length))) controls.append(factorControl("Exaggerate along", factor.along, (x) => ((factor.along = x), again())));
+  if (moves && !motion.placed) {
     const box = el("input", { type: "checkbox", on: { change: () => ((follow = box.checked), again()) } });
     controls.append(el("label", {}, box, "Follow the root"));
   }

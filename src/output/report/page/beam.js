@@ -1,7 +1,8 @@
 // A deformed beam on a canvas: a band as high as the beam, its bladders coloured by pressure, its tubes as lines.
 
-/** Positions of the nodes of a shape and the unit vectors along which its sections lie: x along, y across. `angle`: of sections that shear. */
-function curveOf(theta, u1, u3, factor, angle) {
+/** Positions of the nodes of a shape and the unit vectors along which its sections lie: x along, y across. `angle`: of sections that shear; `nodes`: of a structure. */
+function curveOf(theta, u1, u3, factor, angle, nodes) {
+  if (nodes) return structureCurve(nodes, u1, u3, factor, angle);
   const n = theta.length;
   const out = { theta, n, x: new Float64Array(n), y: new Float64Array(n), nx: new Float64Array(n), ny: new Float64Array(n) };
   for (let k = 0; k < n; k++) {
@@ -44,16 +45,16 @@ function paintBeam(ctx, view, curve, scene, layout, pressure) {
       else ctx.moveTo(view.X(at[0]), view.Y(at[1]));
     });
   };
-  const sides = [];
-  for (let k = 0; k < curve.n; k++) sides.push([curve.theta[k], halfHeight(scene, curve.theta[k])]);
-  for (let k = curve.n - 1; k >= 0; k--) sides.push([curve.theta[k], -halfHeight(scene, curve.theta[k])]);
-  outline(sides);
-  ctx.closePath();
-  ctx.fillStyle = css("--solid");
-  ctx.fill();
-  ctx.strokeStyle = css("--solid-line");
-  ctx.lineWidth = 1;
-  ctx.stroke();
+  for (const part of partsOf(curve)) {
+    ctx.beginPath();
+    edges(ctx, view, curve, scene, part);
+    ctx.closePath();
+    ctx.fillStyle = css("--solid");
+    ctx.fill();
+    ctx.strokeStyle = css("--solid-line");
+    ctx.lineWidth = 1;
+    ctx.stroke();
+  }
   if (layout.bladders.length) {
     const rim = layout.size[0] * view.scale > 6 ? css("--solid-line") : null;
     for (const b of layout.shown) {
@@ -74,7 +75,7 @@ function paintBeam(ctx, view, curve, scene, layout, pressure) {
     ctx.lineCap = "round";
     ctx.lineJoin = "round";
     const thin = layout.segment * view.scale > 9 ? 1.8 : 0.7;
-    const lines = layout.wires.map((wire) => refined(wire.points, layout.segment));
+    const lines = layout.wires.map((wire) => (wire.far ? wire.points.map((p) => [p.a, p.e]) : refined(wire.points, layout.segment)));
     // A rim in the colour of the paper keeps lines apart from bladders of any colour.
     ctx.strokeStyle = css("--card");
     ctx.lineWidth = 2.2 * thin;
@@ -91,26 +92,41 @@ function paintBeam(ctx, view, curve, scene, layout, pressure) {
     });
     ctx.setLineDash([]);
   }
-  scene.ends.forEach((end, k) => {
-    if (!end.held.slope || !(end.held.across || end.held.along)) return;
-    const a = k === 0 ? curve.theta[0] : curve.theta[curve.n - 1];
+  for (const end of endsOf(scene)) {
+    if (end.form === "joined" || !end.held.slope || !(end.held.across || end.held.along)) continue;
+    const a = end.a ?? (end.tip ? curve.theta[curve.n - 1] : curve.theta[0]);
     outline([[a, -half * 1.5 - 4 / view.scale], [a, half * 1.5 + 4 / view.scale]]);
     ctx.strokeStyle = css("--faint");
     ctx.lineWidth = 4;
     ctx.stroke();
-  });
+  }
+  if (scene.joints) paintJoints(ctx, view, curve, scene, half);
 }
 
-/** The outline of a shape filled with the present colour, for what is shown behind. */
-function paintShade(ctx, view, curve, scene) {
-  const half = (k) => halfHeight(scene, curve.theta[k]);
+/** Ranges of the nodes of single beams, or of parts of them between joints. */
+function partsOf(curve) {
+  return curve.parts || [[0, curve.n]];
+}
+
+/** The sides of a part, there and back. */
+function edges(ctx, view, curve, scene, [from, to]) {
+  // Slightly inside, so that a border of segments belongs to the part.
+  const middle = (curve.theta[from] + curve.theta[to - 1]) / 2;
+  const half = (k) => halfHeight(scene, curve.parts ? curve.theta[k] + 1e-6 * (middle - curve.theta[k]) : curve.theta[k]);
   const edge = (k, height) => {
     const e = height - scene.line;
     ctx.lineTo(view.X(curve.x[k] + e * curve.nx[k]), view.Y(curve.y[k] + e * curve.ny[k]));
   };
+  const e = half(from) - scene.line;
+  ctx.moveTo(view.X(curve.x[from] + e * curve.nx[from]), view.Y(curve.y[from] + e * curve.ny[from]));
+  for (let k = from + 1; k < to; k++) edge(k, half(k));
+  for (let k = to - 1; k >= from; k--) edge(k, -half(k));
+}
+
+/** The outline of a shape filled with the present colour, for what is shown behind. */
+function paintShade(ctx, view, curve, scene) {
   ctx.beginPath();
-  for (let k = 0; k < curve.n; k++) edge(k, half(k));
-  for (let k = curve.n - 1; k >= 0; k--) edge(k, -half(k));
+  for (const part of partsOf(curve)) edges(ctx, view, curve, scene, part);
   ctx.fill();
 }
 

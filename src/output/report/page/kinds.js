@@ -23,15 +23,15 @@ function showScene(describe) {
   const half = scene.bladders?.per_row;
   const there = half ? scene.bladders.present.filter(Boolean).length : 0;
   const plural = (n) => `${n} bladder${n === 1 ? "" : "s"}`;
-  const size = there === 2 * half && half ? `${plural(half)} in each of two rows` : there ? plural(there) : "no bladders";
-  const body = section("scene", "Structure", `A beam ${scene.size}, seen from the side, with ${size}.`);
+  const size = there === 2 * half && half && !scene.beams ? `${plural(half)} in each of two rows` : there ? plural(there) : "no bladders";
+  const body = section("scene", "Structure", `${scene.beams ? "" : "A beam "}${scene.size}, seen from the side, with ${size}.`);
   const host = el("div");
   const readout = el("div", { class: "readout dim", "aria-live": "polite", text: half ? "Point at a bladder or a tube, or move among bladders with the arrow keys." : "" });
   const legend = el("ul", { class: "legend" });
   const note = el("p", { class: "caption" });
   const card = figure(null, null, host, half ? readout : null, legend, note);
   const parts = half ? ` ${scene.bladders.outlines ? "Outlines" : "Rectangles"} are bladders, which lie across the beam; lines are tubes, which join their ends in front and behind.` : "";
-  const scale = (thicker) => (note.textContent = `${thicker > 1.01 ? `To scale along the beam; its height is drawn ${shortest(thicker)} times larger.` : "To scale."} Root on the left, tip on the right.${parts}`);
+  const scale = (thicker) => (note.textContent = `${thicker > 1.01 ? `To scale along the beam${scene.beams ? "s" : ""}; its height is drawn ${shortest(thicker)} times larger.` : "To scale."} ${scene.beams ? "z to the right, x up; bladders are numbered along each beam. Dots are rigid joints, open circles hinges, squares elastic joints and sliders." : "Root on the left, tip on the right."}${parts}`);
   body.append(card);
   const drawing = drawScene(scene, host, readout, describe || ((b, layout) => bladderWords(b, layout, scene)), scale);
   drawn(() => legend.replaceChildren(...sceneWords(scene, drawing.layout).map(([mark, strong, text]) => el("li", {}, mark, el("span", {}, el("b", { text: strong }), ` ${text}`)))));
@@ -41,8 +41,8 @@ function showScene(describe) {
 function bladderWords(b, layout, scene) {
   const k = layout.colourOf(b.network);
   const where = k >= 0 ? `network ${k + 1}` : "joined to no other bladder";
-  if (b.absent) return `No bladder ${String(b.label).replace("-", "−")}.`;
-  return `Bladder ${String(b.label).replace("-", "−")} (${b.row > 0 ? "upper" : "lower"} row): ${where}; ${scene.bladders.volumes ? scene.bladders.volumes[b.index % scene.bladders.per_row][b.row > 0 ? 0 : 1] : scene.bladders.volume} at rest.`;
+  if (b.absent) return `No bladder ${labelText(b.label)}.`;
+  return `Bladder ${labelText(b.label)} (${b.row > 0 ? "upper" : "lower"} row): ${where}; ${scene.bladders.volumes ? scene.bladders.volumes[b.index % scene.bladders.per_row][b.row > 0 ? 0 : 1] : scene.bladders.volume} at rest.`;
 }
 
 /** Rows of the legend: mark, strong words, words. */
@@ -51,7 +51,7 @@ function sceneWords(scene, layout) {
   const line = (colour, dash) => swatch(svg("path", { d: "M1 7H25", style: `stroke:${colour};stroke-width:3;stroke-linecap:round`, "stroke-dasharray": dash || null }));
   const out = [];
   const list = (bladders) => {
-    const labels = bladders.map((b) => String(layout.bladders[b].label).replace("-", "−"));
+    const labels = bladders.map((b) => labelText(layout.bladders[b].label));
     return labels.length > 12 ? `${labels.slice(0, 5).join(" ")} … ${labels.slice(-3).join(" ")} (${labels.length})` : labels.join(" ");
   };
   const plain = { sealed: "sealed", connected: "joined to other parts" };
@@ -73,8 +73,9 @@ function sceneWords(scene, layout) {
   const wall = swatch(svg("path", { d: "M13 0V14", style: `stroke:${css("--faint")};stroke-width:4` }));
   const push = swatch(arrow(3, 7, 23, 7, css("--accent"), false));
   const shake = swatch(arrow(3, 7, 23, 7, css("--accent"), true));
-  scene.ends.forEach((end, k) => {
-    const which = k === 0 ? "Root" : "Tip";
+  endsOf(scene).forEach((end, k) => {
+    if (end.form === "joined") return;
+    const which = scene.beams ? `${scene.beams[Math.floor(k / 2)].name} ${end.tip ? "tip" : "root"}` : k === 0 ? "Root" : "Tip";
     const forms = { clamped: "clamped", pinned: "pinned, free to turn", free: "free", guided: "guided: its slope is held", conditions: "held as given in the case" };
     out.push([wall.cloneNode(true), which, forms[end.form] || end.form]);
     for (const [key, words] of [["across", "moved across"], ["along", "moved along the beam"], ["slope", "turned"]]) if (end.moves[key]) out.push([shake.cloneNode(true), which, `${words}: ${end.moves[key]}`]);
@@ -84,7 +85,9 @@ function sceneWords(scene, layout) {
   });
   const circle = swatch(svg("circle", { cx: 13, cy: 7, r: 5.5, style: `fill:none;stroke:${css("--faint")};stroke-width:3` }));
   for (const one of scene.obstacles || []) out.push(one.center ? [circle.cloneNode(true), "Circle", one.words] : [wall.cloneNode(true), "Wall", one.words]);
+  for (const joint of (scene.joints || []).slice(0, 16)) out.push([swatch(jointMark(joint, 13, 7, 4.5)), "Joint", joint.words]);
   for (const load of scene.loads) out.push([push.cloneNode(true), "Load", load.words]);
+  for (const beam of scene.beams || []) for (const load of beam.loads) out.push([push.cloneNode(true), `Load on ${beam.name}`, load.words]);
   return out;
 }
 
@@ -94,6 +97,7 @@ function showRun() {
   const scene = data.scene;
   let clock = null;
   if (motion && scene) {
+    if (motion.placed) motion.beams = fieldsOfBeams(motion, scene);
     clock = makeClock(motion.times, motion.frequency_hz ? 1 / motion.frequency_hz : null);
   }
   const describe = (b, layout) => {
@@ -120,7 +124,8 @@ function showRun() {
     if (notes.length) host.append(el("p", { class: "caption", text: notes.join(" ") }));
     const tip = motion.nodes - 1;
     body.append(player(clock, (c) => {
-      const all = [["time", quantity(c.time, "s", 4)], ["tip across", quantity(settled(motion.u1[c.index * motion.nodes + tip], scene.length), "m")], ["tip along", quantity(settled(motion.u3[c.index * motion.nodes + tip], scene.length), "m")]];
+      const tips = motion.beams?.slice(0, 3).flatMap((beam) => [[`${beam.name} tip u₁`, motion.u1], [`${beam.name} tip u₃`, motion.u3]].map(([label, values]) => [label, quantity(settled(values[c.index * motion.nodes + beam.tip], scene.length), "m")]));
+      const all = tips ? [["time", quantity(c.time, "s", 4)], ...tips] : [["time", quantity(c.time, "s", 4)], ["tip across", quantity(settled(motion.u1[c.index * motion.nodes + tip], scene.length), "m")], ["tip along", quantity(settled(motion.u3[c.index * motion.nodes + tip], scene.length), "m")]];
       if (motion.pressure) {
         const now = motion.pressure.subarray(c.index * motion.cells, (c.index + 1) * motion.cells);
         const [low, high] = extent(now.filter((_, cell) => !motion.present || motion.present[cell]));

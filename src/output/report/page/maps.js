@@ -3,6 +3,11 @@
 function showMaps(host, motion, clock, scene) {
   const n = motion.nodes;
   const maps = [];
+  if (motion.beams) {
+    mapsOfBeams(host, maps, motion, scene);
+    for (const map of maps) showMap(host, map, motion, clock);
+    return;
+  }
   const along = (title, values, unit, about) => maps.push({ title, unit, about, rows: n, low: "root", high: "tip", at: (f, k) => values[f * n + k], values, place: (k) => `θ = ${quantity(motion.theta[k], "m")}` });
   if (largest(motion.u1) > 1e-9 * scene.length) along("Deflection across, u₁", motion.u1, "m", "Red: the beam is up there, blue: down.");
   if (largest(motion.u3) > 1e-9 * scene.length) along("Displacement along, u₃", motion.u3, "m", "Red: moved towards the tip, blue: towards the root.");
@@ -18,6 +23,28 @@ function showMaps(host, motion, clock, scene) {
     });
   }
   for (const map of maps) showMap(host, map, motion, clock);
+}
+
+/** Maps of each beam of a structure. */
+function mapsOfBeams(host, maps, motion, scene) {
+  const layout = layOut(scene);
+  const beams = motion.beams.slice(0, MOST_MAPPED);
+  if (beams.length < motion.beams.length) host.before(el("p", { class: "caption", text: `Maps are drawn for the first ${MOST_MAPPED} of ${motion.beams.length} beams; fields.npz has all.` }));
+  beams.forEach((beam, number) => {
+    const along = (title, values, unit, about) => {
+      if (values && largest(values) * (unit === "m" ? 1 : scene.length ** 2) > 1e-9 * scene.length) maps.push({ title: `${title} of ${beam.name}`, unit, about, rows: beam.nodes, values, at: (f, k) => values[f * beam.nodes + k], place: (k) => `${beam.name}, θ = ${quantity(beam.theta[k], "m")}` });
+    };
+    along("Deflection across, u₁,", beam.u1, "m", "In the axes of the beam. Red: towards its upper side, blue: towards its lower side.");
+    along("Displacement along, u₃,", beam.u3, "m", "In the axes of the beam. Red: moved towards the tip, blue: towards the root.");
+    along("Curvature κ", beam.curvature, "1/m", "Red: the upper side is stretched, blue: the lower.");
+    for (const row of motion.ofBladder ? [1, -1] : []) {
+      const own = layout.bladders.filter((b) => b.row === row && beamAt(scene, b.a) === number);
+      maps.push({
+        title: `Pressure, ${row > 0 ? "upper" : "lower"} row of ${beam.name}`, unit: "Pa", about: "Red: above the pressure outside, blue: below.", rows: own.length, values: motion.ofBladder, scale: motion.pressureScale,
+        at: (f, k) => motion.ofBladder[f * motion.bladders + own[k].index], place: (k) => `bladder ${labelText(own[k].label)}`,
+      });
+    }
+  });
 }
 
 function showMap(host, map, motion, clock) {

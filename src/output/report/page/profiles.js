@@ -8,7 +8,14 @@ function showProfiles(host, motion, clock, scene) {
   const curves = [];
   const across = largest(motion.u1) > 1e-9 * scene.length;
   const [field, sign, words] = across ? [motion.u1, "u₁", "across"] : [motion.u3, "u₃", "along"];
-  curves.push({
+  for (const beam of (motion.beams || []).slice(0, MOST_CURVED)) {
+    curves.push({
+      title: `Deflection ${sign} along ${beam.name}`, values: across ? beam.u1 : beam.u3, width: beam.nodes, x: beam.theta, axis: { ...lengths, low: 0, high: beam.length, name: `place along ${beam.name} θ` }, name: `${sign} ${words}`, unit: "m", floor: 1e-12 * scene.length,
+      about: (most) => `In the axes of ${beam.name}. Every line is one instant of ${when}, from blue (early) to red (late); the thick line is the instant of the player. Largest in this span: ${quantity(most, "m")}.`,
+    });
+  }
+  if (motion.beams?.length > MOST_CURVED) host.before(el("p", { class: "caption", text: `Curves are drawn for the first ${MOST_CURVED} of ${motion.beams.length} beams; fields.npz has all.` }));
+  if (!motion.beams) curves.push({
     title: `Deflection ${sign} along the beam`, values: field, width: motion.nodes, x: motion.theta, axis: lengths, name: `${sign} ${words}`, unit: "m", floor: 1e-12 * scene.length,
     about: (most) => `Every line is one instant of ${when}, from blue (early) to red (late); the thick line is the instant of the player. Largest in this span: ${quantity(most, "m")}.`,
   });

@@ -7,7 +7,7 @@ function drawScene(scene, host, readout, describe, scale) {
   let chosen = -1;
   const paint = () => {
     const width = Math.max(host.clientWidth, 280);
-    frame.replaceChildren(sceneDrawing(scene, layout, width, chosen));
+    frame.replaceChildren((scene.beams ? structureDrawing : sceneDrawing)(scene, layout, width, chosen));
     const picture = frame.firstChild;
     scale(picture.thicker);
     if (!layout.bladders.length) return;
@@ -105,26 +105,26 @@ function drawBladders(add, layout, X, Y, scale, thicker) {
 }
 
 /** Numbers of bladders, over whatever crosses them. */
-function drawNumbers(add, layout, X, Y, scale, thicker) {
+function drawNumbers(add, layout, X, Y, scale, thicker, degrees = 0) {
   const shown = layout.shown.filter((b) => b.size[0] * scale >= 17);
   const size = (b) => Math.min(11, (b.size[0] * scale) / 2.2);
   const style = `paint-order:stroke;stroke:${css("--card")};stroke-width:3.5px;stroke-linejoin:round;pointer-events:none`;
   for (const b of shown) {
     const h = b.size[1] * scale * thicker;
     const y = b.row > 0 ? Y(b.e) - h / 2 + Math.min(12, h * 0.42) : Y(b.e) + h / 2 - 3;
-    add(svg("text", { x: X(b.a), y, "text-anchor": "middle", style: `font-size:${size(b)}px;${style}`, text: String(b.label).replace("-", "−") }));
+    add(svg("text", { x: X(b.a), y, "text-anchor": "middle", transform: degrees ? `rotate(${degrees} ${X(b.a)} ${y - 4})` : null, style: `font-size:${size(b)}px;${style}`, text: String(b.short).replace("-", "−") }));
   }
 }
 
 function drawWires(add, layout, X, Y, scale) {
   const touchable = layout.wires.length <= 1200;
   const strong = layout.segment * scale > 34 ? 3 : layout.segment * scale > 9 ? 2 : 1.2;
-  layout.wires.forEach((wire, k) => {
+  layout.wires.forEach((wire) => {
     const d = linePath(wire.points.length, (i) => [X(wire.points[i].a), Y(wire.points[i].e)]);
     const colour = wireColour(wire.colour);
     const dash = wire.turbine ? "2 5" : null;
     add(svg("path", { d, style: `fill:none;stroke:${colour};stroke-width:${wire.free || wire.turbine ? 2.2 : strong};stroke-linejoin:round;stroke-linecap:round`, "stroke-dasharray": dash }));
-    if (touchable && wire.words) add(svg("path", { d, "data-wire": k, style: "fill:none;stroke:transparent;stroke-width:9;pointer-events:stroke" }));
+    if (touchable && wire.words) add(svg("path", { d, "data-wire": wire.index, style: "fill:none;stroke:transparent;stroke-width:9;pointer-events:stroke" }));
     const m = middleOf(wire.points);
     const [x, y] = [X(m.a), Y(m.e)];
     if (wire.valve && strong > 1.5) {
@@ -141,8 +141,7 @@ function drawWires(add, layout, X, Y, scale) {
 }
 
 /** Ends of chains and ports: a bar where nothing flows, a ring where pressure is given, an arrow where flow is. */
-function drawMarks(add, layout, X, Y, scene, thicker) {
-  let drawn = 0;
+function drawMarks(add, layout, X, Y, scene, thicker, degrees = 0) {
   for (const mark of layout.marks) {
     const colour = wireColour(mark.colour);
     const [from, y] = [X(mark.at.a), Y(mark.at.e)];
@@ -154,11 +153,9 @@ function drawMarks(add, layout, X, Y, scene, thicker) {
     const away = mark.row > 0 ? -1 : 1;
     const edge = Y((mark.row * scene.height) / 2) + away * 18;
     add(svg("path", { d: `M${from} ${y}${x === from ? "" : `H${x}`}V${edge - away * 6}`, style: `stroke:${colour};stroke-width:2.2;fill:none` }));
-    const letter = String.fromCharCode(65 + drawn++);
-    mark.letter = letter;
     if (mark.kind === "pressure") add(svg("circle", { cx: x, cy: edge, r: 8.5, style: `fill:${css("--card")};stroke:${colour};stroke-width:2` }));
     else add(svg("path", { d: `M${x - 9} ${edge + away * 8}H${x + 9}L${x} ${edge - away * 8}Z`, style: `fill:${css("--card")};stroke:${colour};stroke-width:2;stroke-linejoin:round` }));
-    add(svg("text", { class: "strong", x, y: edge + (mark.kind === "pressure" ? 4 : away > 0 ? 7 : 0), "text-anchor": "middle", style: "font-size:10px", text: letter }));
+    add(svg("text", { class: "strong", x, y: edge + (mark.kind === "pressure" ? 4 : away > 0 ? 7 : 0), "text-anchor": "middle", transform: degrees ? `rotate(${degrees} ${x} ${edge})` : null, style: "font-size:10px", text: mark.letter }));
   }
 }
 

@@ -15,18 +15,26 @@ function showPath() {
     const slider = el("input", { type: "range", min: 0, max: states.length - 1, step: 1, value: states.length - 1, "aria-label": "State along the path", id: "state" });
     const words = el("div", { class: "readout", id: "state-words" });
     const layout = layOut(scene);
-    const size = largest(x);
+    const nodes = placeNodes(shapes.placed, scene);
+    const moved = (values, rest) => Float64Array.from(values, (value, k) => value - rest[k % n]);
+    // Displacements of a structure are along the axes of the case.
+    const [up, right] = nodes ? [moved(x, nodes.x), moved(z, nodes.z)] : [null, null];
+    const fixed = nodes && { ...nodes, angle: new Float64Array(n) };
+    const size = nodes ? Math.max(largest(up), largest(right)) : largest(x);
     const factor = { across: roundFactor(size, scene.length), along: 1 };
-    const bounds = { x0: 0, x1: scene.length, y0: 0, y1: 0 };
-    x.forEach((across, k) => widen(bounds, z[k], across * factor.across));
+    if (nodes) factor.along = factor.across;
+    const bounds = straightBounds(scene);
+    if (nodes) up.forEach((across, k) => widen(bounds, nodes.z[k % n] + right[k] * factor.along, nodes.x[k % n] + across * factor.across));
+    else x.forEach((across, k) => widen(bounds, z[k], across * factor.across));
     bounds.y0 -= 0.8 * scene.height;
     bounds.y1 += 0.8 * scene.height;
     const curve = (s) => {
+      if (nodes) return structureCurve(fixed, up.subarray(s * n, (s + 1) * n), right.subarray(s * n, (s + 1) * n), factor, null);
       const u3 = new Float64Array(n);
       for (let k = 0; k < n; k++) u3[k] = z[s * n + k] - theta[k];
       return curveOf(theta, x.subarray(s * n, (s + 1) * n), u3, factor);
     };
-    const note = factor.across === 1 ? "To scale, nothing exaggerated." : `Deflection across drawn ${count(factor.across)} times larger.`;
+    const note = factor.across === 1 ? "To scale, nothing exaggerated." : `${nodes ? "Displacements" : "Deflection across"} drawn ${count(factor.across)} times larger.`;
     body.append(figure(null, `${note} The faint shade is where the other states of the path lie.`, canvas, el("div", { class: "controls" }, el("label", { style: "flex:1 1 200px" }, "State", slider)), words));
     slider.style.flex = "1 1 auto";
     const columns = (path?.headings || []).map((h) => /^(.*) \[(.*)\]$/.exec(h)).map((m) => (m ? [m[1], m[2]] : null));
@@ -113,6 +121,7 @@ function showEvents() {
 function movingShapes(body, shapes, one) {
   const get = (name) => floats(shapes[name]);
   const theta = get("theta_m");
+  const nodes = placeNodes(shapes.placed, data.scene);
   // Without the case only the line of the beam is known.
   const scene = data.scene || { length: theta.at(-1), height: 0.06 * theta.at(-1), ends: [], loads: [], bladders: null };
   const n = theta.length;
@@ -126,12 +135,17 @@ function movingShapes(body, shapes, one) {
   const button = showPlaying(el("button", { type: "button", class: "main" }), playing);
   const slider = el("input", { type: "range", min: 0, max: 100, value: 0, "aria-label": "Phase", style: "flex:1 1 160px", "data-keys": "" });
   body.append(figure(null, null, el("div", { class: "controls" }, el("label", {}, one.name, select), button, slider), canvas, words));
-  const bounds = { x0: -0.02 * scene.length, x1: 1.05 * scene.length, y0: -0.13 * scene.length - 0.6 * scene.height, y1: 0.13 * scene.length + 0.6 * scene.height };
+  const bounds = straightBounds(scene);
+  const reach = nodes ? 0.13 * Math.max(bounds.x1 - bounds.x0, bounds.y1 - bounds.y0) : 0.13 * scene.length;
+  bounds.x0 -= nodes ? reach + 0.6 * scene.height : 0.02 * scene.length;
+  bounds.x1 += nodes ? reach + 0.6 * scene.height : 0.05 * scene.length;
+  bounds.y0 -= reach + 0.6 * scene.height;
+  bounds.y1 += reach + 0.6 * scene.height;
   const paint = () => {
     const k = Number(select.value);
     const part = (values, count) => values.subarray(k * count, (k + 1) * count);
     const size = Math.max(largest(part(a1, n)), largest(part(a3, n)), 1e-300);
-    const factor = (0.11 * scene.length) / size;
+    const factor = (0.11 * (nodes ? reach / 0.13 : scene.length)) / size;
     const oscillates = one.oscillates(k);
     // Modes that decay without oscillation are also drawn oscillating, to show their shape.
     const at = (a, f, i) => a[i] * Math.cos(2 * Math.PI * phase + (oscillates ? f[i] : Math.cos(f[i]) < 0 ? Math.PI : 0));
@@ -144,7 +158,7 @@ function movingShapes(body, shapes, one) {
     const per = shapes.bladders || 0;
     const most = ap ? largest(part(ap, per)) : 0;
     const pressure = most > 0 ? (b) => at(part(ap, per), part(fp, per), b) / most : null;
-    painted(canvas, view.height, (ctx) => paintBeam(ctx, view, curveOf(theta, u1, u3, { across: factor, along: factor }), scene, layout, pressure));
+    painted(canvas, view.height, (ctx) => paintBeam(ctx, view, curveOf(theta, u1, u3, { across: factor, along: factor }, null, nodes), scene, layout, pressure));
     slider.value = Math.round(100 * phase);
     words.textContent = `${one.words(k, size, most)}${pressure ? " Bladders are coloured by their pressure: red and blue are opposite." : ""}`;
   };
@@ -238,7 +252,7 @@ function showResponse() {
   }
   let chooseShape = null;
   if (shapes) {
-    const body = section("shapes", "Motion of the beam", "The shape of the steady motion at peaks and at the frequencies of --frequency, over one cycle of the input. Amplitudes are drawn as large as can be seen.");
+    const body = section("shapes", data.scene?.beams ? "Motion of the structure" : "Motion of the beam", "The shape of the steady motion at peaks and at the frequencies of --frequency, over one cycle of the input. Amplitudes are drawn as large as can be seen.");
     const follow = (k) => ((clock.time = shapes.hz[k]), clock.ticks.forEach((act) => act()));
     const unit = (x, name) => `${significant(x, 4)} ${name}`;
     chooseShape = movingShapes(body, shapes, {

@@ -25,6 +25,9 @@ function layOut(scene) {
     return { e: (low + top) / 2, size: [right - left, top - low], outline: points.map(([z, x]) => [z, x - (low + top) / 2]) };
   });
   if (rows.length) out.size = [Math.max(...rows.map((r) => r.size[0])), Math.max(...rows.map((r) => r.size[1]))];
+  const number = (a) => (scene.beams ? beamAt(scene, a) : 0);
+  const apartBeams = (A, B) => number(A.a) !== number(B.a);
+  const first = (j) => (scene.beams ? borders.findIndex((border) => number(border + 1e-9 * scene.length) === number((borders[j] + borders[j + 1]) / 2)) : 0);
   for (let b = 0; b < 2 * perRow; b++) {
     const row = b < perRow ? 1 : -1;
     const j = b % perRow;
@@ -34,7 +37,7 @@ function layOut(scene) {
     const both = scene.bladders.present[j] && scene.bladders.present[perRow + j];
     const size = [width, scene.bladders.heights ? Math.min(scene.bladders.heights[j][row > 0 ? 0 : 1], (both ? 0.92 : 1.84) * half) : high];
     const e = row * Math.min(0.5 * half, 0.96 * half - size[1] / 2);
-    out.bladders.push({ index: b, row, label: row * (j + 1), a: middle, e, size, absent: !scene.bladders.present[b], ...rows[row > 0 ? 0 : 1], network: network[b], flipped: false });
+    out.bladders.push({ index: b, row, label: scene.bladders.labels?.[b] ?? row * (j + 1), short: row * (j + 1 - first(j)), a: middle, e, size, absent: !scene.bladders.present[b], ...rows[row > 0 ? 0 : 1], network: network[b], flipped: false });
   }
   out.shown = out.bladders.filter((b) => !b.absent);
   const sizes = new Map();
@@ -47,7 +50,8 @@ function layOut(scene) {
     chain.bladders.forEach((b, k) => {
       const next = chain.bladders[k + 1] ?? null;
       const before = chain.bladders[k - 1] ?? null;
-      const way = next !== null ? out.bladders[next].a - out.bladders[b].a : before !== null ? out.bladders[b].a - out.bladders[before].a : 1;
+      const other = next ?? before;
+      const way = other !== null && apartBeams(out.bladders[b], out.bladders[other]) ? 1 : next !== null ? out.bladders[next].a - out.bladders[b].a : before !== null ? out.bladders[b].a - out.bladders[before].a : 1;
       out.bladders[b].flipped = way < 0;
     });
   }
@@ -56,14 +60,15 @@ function layOut(scene) {
     const side = outlet !== bladder.flipped ? 1 : -1;
     return { a: bladder.a + side * 0.24 * bladder.size[0], e: bladder.e };
   };
-  const name = (b) => String(out.bladders[b].label).replace("-", "−");
+  const name = (b) => labelText(out.bladders[b].label);
   chains.forEach((chain, c) => {
     const colour = out.colourOf(network[chain.bladders[0]]);
     chain.bladders.forEach((b, k) => {
       out.wires.push({ points: [mouth(b, false), mouth(b, true)], colour, within: true });
       const next = chain.bladders[k + 1];
       if (next === undefined) return;
-      out.wires.push({ points: [mouth(b, true), mouth(next, false)], colour, words: `Tube of chain ${c + 1}, from bladder ${name(b)} to bladder ${name(next)}${chain.valve ? `; ${chain.valve}` : ""}`, valve: chain.valve });
+      const points = [mouth(b, true), mouth(next, false)];
+      out.wires.push({ points, far: apartBeams(...points), colour, words: `Tube of chain ${c + 1}, from bladder ${name(b)} to bladder ${name(next)}${chain.valve ? `; ${chain.valve}` : ""}`, valve: chain.valve });
     });
     [[chain.bladders[0], false], [chain.bladders.at(-1), true]].forEach(([b, outlet], k) => {
       const end = chain.ends[k];
@@ -71,7 +76,7 @@ function layOut(scene) {
       out.marks.push({ ...end, at: mouth(b, outlet), row: out.bladders[b].row, colour, where: `bladder ${name(b)}` });
     });
   });
-  const nodes = placeJunctions(out, junctions, tubes, turbines, mouth);
+  const nodes = placeJunctions(out, junctions, tubes, turbines, mouth, scene.beams ? number : null);
   const point = (p) => (p.junction !== undefined ? nodes.get(p.junction) : mouth(p.bladder, p.outlet));
   const colourAt = (p) => (p.junction !== undefined ? nodes.get(p.junction)?.colour ?? -1 : out.colourOf(network[p.bladder]));
   const called = (p) => (p.junction !== undefined ? `junction ${p.junction}` : `bladder ${name(p.bladder)}`);
@@ -79,6 +84,7 @@ function layOut(scene) {
   const connect = (from, to) => {
     const [A, B] = [point(from), point(to)];
     if (!A || !B) return null;
+    if (apartBeams(A, B)) return [A, B];
     const apart = Math.abs(A.a - B.a);
     if (apart < 1.2 * segment && A.e === B.e) return [A, B];
     const far = apart > 2 * segment;
@@ -88,12 +94,12 @@ function layOut(scene) {
   };
   for (const tube of tubes) {
     const points = connect(tube.from, tube.to);
-    if (points) out.wires.push({ points, colour: colourAt(tube.from), free: true, valve: tube.valve, words: `Tube from ${called(tube.from)} to ${called(tube.to)}${tube.valve ? `; ${tube.valve}` : ""}` });
+    if (points) out.wires.push({ points, far: apartBeams(points[0], points.at(-1)), colour: colourAt(tube.from), free: true, valve: tube.valve, words: `Tube from ${called(tube.from)} to ${called(tube.to)}${tube.valve ? `; ${tube.valve}` : ""}` });
   }
   for (const turbine of turbines) {
     const points = connect(turbine.from, turbine.to);
     const words = `Turbine${turbine.name ? ` “${turbine.name}”` : ""} between ${called(turbine.from)} and ${called(turbine.to)}${turbine.rectified ? ", behind four check valves" : ""}`;
-    if (points) out.wires.push({ points, colour: -2, turbine, words });
+    if (points) out.wires.push({ points, far: apartBeams(points[0], points.at(-1)), colour: -2, turbine, words });
   }
   for (const port of ports) {
     const at = point(port.at);
@@ -102,9 +108,13 @@ function layOut(scene) {
     out.marks.push({ ...port, at, row, colour: colourAt(port.at), where: called(port.at) });
   }
   for (const row of [1, -1]) {
-    const drawn = out.marks.filter((mark) => mark.row === row && mark.kind !== "sealed");
-    apart(drawn.map((mark) => mark.at.a), 0.04 * scene.length, scene.length).forEach((a, k) => (drawn[k].drawn = a));
+    for (const beam of scene.beams || [{ from: 0, length: scene.length }]) {
+      const drawn = out.marks.filter((mark) => mark.row === row && mark.kind !== "sealed" && (!scene.beams || scene.beams[number(mark.at.a)] === beam));
+      apart(drawn.map((mark) => mark.at.a), 0.04 * scene.length, beam.from + beam.length).forEach((a, k) => (drawn[k].drawn = a));
+    }
   }
+  out.marks.filter((mark) => mark.kind !== "sealed").forEach((mark, k) => (mark.letter = String.fromCharCode(65 + k)));
+  out.wires.forEach((wire, k) => (wire.index = k));
   out.junctions = [...nodes.entries()].map(([key, at]) => ({ name: key, ...at }));
   return out;
 }
@@ -121,19 +131,26 @@ function apart(places, gap, length) {
 }
 
 /** Junctions in the middle of the beam, between what they join, beside one another. */
-function placeJunctions(out, names, tubes, turbines, mouth) {
+function placeJunctions(out, names, tubes, turbines, mouth, number) {
   const nodes = new Map();
   for (const key of names) {
     const met = [...tubes, ...turbines].flatMap((t) => [[t.from, t.to], [t.to, t.from]]).filter(([p]) => p.junction === key).map(([, q]) => q);
     const bladders = met.filter((q) => q.bladder !== undefined);
-    const places = bladders.map((q) => mouth(q.bladder, q.outlet).a);
+    const all = bladders.map((q) => mouth(q.bladder, q.outlet).a);
+    // In a structure a junction is drawn on the beam of its first bladder.
+    const places = number ? all.filter((a) => number(a) === number(all[0])) : all;
     const a = places.length ? places.reduce((s, x) => s + x, 0) / places.length : 0.5 * out.length;
     const first = bladders[0];
     nodes.set(key, { a, e: 0, colour: first ? out.colourOf(out.bladders[first.bladder].network) : -1 });
   }
   const placed = [...nodes.values()];
-  apart(placed.map((node) => node.a), 0.06 * out.length, out.length).forEach((a, k) => (placed[k].a = a));
+  if (!number) apart(placed.map((node) => node.a), 0.06 * out.length, out.length).forEach((a, k) => (placed[k].a = a));
   return nodes;
+}
+
+/** Label of a bladder with a minus sign: -3 or left:-3. */
+function labelText(label) {
+  return String(label).replace(/-(?=\d+$)/, "−");
 }
 
 /** Colour of a wire or mark: of its network, or of what belongs to none. */
