@@ -157,6 +157,10 @@ pub fn parse_varied(text: &str, path: &Path, base: &Path, sets: &[String], varie
     validate::validate(&value, &own, &schema_json::CASE, &mut faults);
     faults.drop_below(&invalid);
     if own.get("beams").is_some() {
+        let unknown = structure::unknown_bladders(&value);
+        let pointers: Vec<String> = unknown.iter().map(|fault| fault.pointer.clone()).collect();
+        faults.drop_below(&pointers);
+        unknown.into_iter().for_each(|fault| faults.push(fault));
         // they repeat those of beams
         faults.drop_below(&["/spans".to_owned()]);
         if own.get("spans").is_some() {

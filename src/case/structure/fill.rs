@@ -6,6 +6,8 @@ use serde_json::{Map, Value, json};
 
 use crate::case::presets::Preset;
 use crate::case::schema::{Span, SpanLengths};
+use crate::case::wording::nearest;
+use crate::error::{Code, Violation};
 
 /// Number of segments of a dry beam that gives none.
 const SEGMENTS: u64 = 10;
@@ -31,7 +33,7 @@ pub fn fill(case: &mut Value) {
         ("length_m", given("/beam/length_m")),
         ("segments", given(number).or_else(|| dry.then(|| SEGMENTS.into()))),
     ];
-    let (mut spans, mut total, mut counts, mut first) = (vec![], 0.0, 0, HashMap::new());
+    let (mut spans, mut total, mut counts, mut first) = (vec![], 0.0, 0_u64, HashMap::new());
     for beam in beams.iter_mut().filter_map(Value::as_object_mut) {
         if beam.get("segments").is_none()
             && let Some(own) = segments_of_spans(beam)
@@ -49,7 +51,7 @@ pub fn fill(case: &mut Value) {
         let name = beam.get("name").and_then(Value::as_str).unwrap_or_default();
         first.insert(name.to_owned(), (counts, segments));
         spans.extend(spans_of(beam, length, segments));
-        (total, counts) = (total + length, counts + segments);
+        (total, counts) = (total + length, counts.saturating_add(segments));
     }
     let Some(case) = case.as_object_mut() else { return };
     for key in ["network", "start"] {
@@ -127,16 +129,77 @@ fn number_bladders(value: &mut Value, first: &HashMap<String, (u64, u64)>) {
         Value::Array(items) => items.iter_mut().for_each(|item| number_bladders(item, first)),
         Value::Object(members) => members.values_mut().for_each(|member| number_bladders(member, first)),
         Value::String(text) => {
-            let number = text.rsplit_once(':').and_then(|(name, number)| {
-                let (before, segments) = first.get(name)?;
-                let number: i64 = number.parse().ok()?;
-                let there = (1..=*segments).contains(&number.unsigned_abs());
-                there.then(|| number + number.signum() * *before as i64)
-            });
-            if let Some(number) = number {
+            if let Some(number) = numbered(text, first) {
                 *value = number.into();
             }
         }
         _ => {}
+    }
+}
+
+/// Number of a bladder `"NAME:3"` among those of all beams.
+fn numbered(text: &str, first: &HashMap<String, (u64, u64)>) -> Option<i64> {
+    let (name, number) = text.rsplit_once(':')?;
+    let (before, segments) = first.get(name)?;
+    let number: i64 = number.parse().ok()?;
+    let there = (1..=*segments).contains(&number.unsigned_abs());
+    there.then(|| number + number.signum() * *before as i64)
+}
+
+/// Faults of bladders of a filled structure whose names were not replaced by numbers.
+pub fn unknown_bladders(case: &Value) -> Vec<Violation> {
+    let beams = case.get("beams").and_then(Value::as_array);
+    let beams: Vec<(&str, u64)> = beams
+        .into_iter()
+        .flatten()
+        .filter_map(|beam| Some((beam.get("name")?.as_str()?, size(beam.as_object()?).1)))
+        .collect();
+    let mut faults = vec![];
+    if !beams.is_empty() {
+        for key in ["network", "start"] {
+            let part = case.get(key).unwrap_or(&Value::Null);
+            named_bladders(part, &format!("/{key}"), false, &mut |pointer, text| {
+                faults.push(unknown_bladder(pointer, text, &beams));
+            });
+        }
+    }
+    faults
+}
+
+/// Visits the texts that stand for bladders.
+fn named_bladders(value: &Value, pointer: &str, within: bool, each: &mut impl FnMut(&str, &str)) {
+    match value {
+        Value::Array(items) => {
+            for (k, item) in items.iter().enumerate() {
+                named_bladders(item, &format!("{pointer}/{k}"), within, each);
+            }
+        }
+        Value::Object(members) => {
+            for (key, member) in members {
+                let within = key == "bladder" || key == "bladders";
+                named_bladders(member, &format!("{pointer}/{key}"), within, each);
+            }
+        }
+        Value::String(text) if within => each(pointer, text),
+        _ => {}
+    }
+}
+
+fn unknown_bladder(pointer: &str, text: &str, beams: &[(&str, u64)]) -> Violation {
+    let allowed = "the name of a beam with a number, \"left:3\" in the upper and \"left:-3\" in the lower row";
+    let names = || beams.iter().map(|(name, _)| *name);
+    let (name, number) = text.rsplit_once(':').unwrap_or((text, ""));
+    match beams.iter().find(|(known, _)| *known == name) {
+        Some((name, segments)) if number.parse::<i64>().is_ok() => {
+            let fault = Violation::new(Code::Name, pointer, format!("there is no bladder \"{text}\""));
+            fault.allowed(format!(
+                "{name}:1 to {name}:{segments} and {name}:-1 to {name}:-{segments}"
+            ))
+        }
+        Some(_) => Violation::new(Code::Name, pointer, format!("\"{text}\" is not a bladder")).allowed(allowed),
+        None => Violation {
+            nearest: nearest(name, names()).map(|name| format!("{name}:{number}")),
+            ..Violation::new(Code::Name, pointer, format!("there is no beam \"{name}\"")).allowed(allowed)
+        },
     }
 }

@@ -8,7 +8,7 @@ use super::schema::Case;
 mod fill;
 mod pieces;
 
-pub use fill::fill;
+pub use fill::{fill, unknown_bladders};
 pub use pieces::{Piece, Place, origins, pieces};
 
 /// Pointer of a value of a span of all beams, as it is written in its beam; none for other pointers.
