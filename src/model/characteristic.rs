@@ -39,8 +39,35 @@ pub fn numbers(case: &Case, model: &Model) -> BTreeMap<String, f64> {
     numbers_with(case, model, mathieu(model).as_ref())
 }
 
+/// Numbers of a single beam, which a structure does not have.
+const OF_ONE_BEAM: [&str; 11] = [
+    "shear_flexibility",
+    "t_s_s",
+    "first_bending_frequency_hz",
+    "first_bending_frequency_in_shear_hz",
+    "first_bending_frequency_relaxing_hz",
+    "first_bending_damping_ratio",
+    "first_bending_frequency_in_fluid_hz",
+    "first_axial_frequency_hz",
+    "euler_load_n",
+    "self_weight_buckling_load_n_m",
+    "largest_strain_estimate",
+];
+
 /// [`numbers`] with Mathieu's parameters given.
 pub fn numbers_with(case: &Case, model: &Model, mathieu: Option<&MathieuTongue>) -> BTreeMap<String, f64> {
+    let mut all = of_one_beam(case, model, mathieu);
+    if let Some(structure) = &model.structure {
+        all.retain(|name, _| !OF_ONE_BEAM.contains(&name.as_str()));
+        // of the stubbiest beam
+        let beams = structure.beams.iter();
+        let slender = beams.map(|beam| beam.whole / (2.0 * beam.model.section.half_height));
+        all.insert("slenderness".into(), slender.fold(f64::INFINITY, f64::min));
+    }
+    all
+}
+
+fn of_one_beam(case: &Case, model: &Model, mathieu: Option<&MathieuTongue>) -> BTreeMap<String, f64> {
     let mut all = BTreeMap::new();
     let mut put = |name: &str, value: f64| {
         if value.is_finite() {
