@@ -74,6 +74,9 @@ fn a_number_set_to_its_own_value_changes_nothing() {
                 .is_some_and(|(array, k)| k.parse::<usize>().is_ok() && file.pointer(array).is_none())
         };
         resolved.retain(|(p, _)| !in_file(p));
+        // in the case of a result they are those of all beams together
+        let of_all = ["/beam/length_m", "/bladders/per_row", "/mesh/segments"];
+        resolved.retain(|(p, _)| file.get("beams").is_none() || !of_all.contains(&p.as_str()));
         let late = |p: &str| {
             p.rsplit('/')
                 .next()

@@ -191,8 +191,10 @@ fn every_number_moves_what_depends_on_it() {
                 let light =
                     number_of(&before, "/fluid/density_kg_m3") < 0.01 * number_of(&before, "/beam/density_kg_m3");
                 let free = full || light && pointer.ends_with("density_kg_m3");
-                // a beam without bladders has a shape of two sides; one with its section has more bladders where it is longer
-                let alike = before.get("bladders").is_none() || before.get("section").is_some();
+                // a beam without bladders has a shape of two sides; one with its section has more bladders where it is longer; those of a
+                // structure have lengths of their own
+                let own = |key: &str| before.get(key).is_some();
+                let alike = !own("bladders") || own("section") || own("beams");
                 let free = free || alike && pointer == "/beam/length_m";
                 match by_it.contains(coefficient) && !free {
                     true if told.contains(coefficient) => warned += 1,

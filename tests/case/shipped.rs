@@ -78,7 +78,8 @@ fn a_resolved_case_reads_back_as_itself_and_needs_no_other_file() {
         let resolved = load(&path, &[]).resolved();
         let text = resolved.resolved_json();
         let again = case::parse(&text, Path::new("case.json"), Path::new("/nowhere"), &[]).unwrap();
-        assert_eq!(again, resolved);
+        // the spans of a structure follow from its beams
+        assert_eq!(again.resolved(), resolved);
     }
 }
 

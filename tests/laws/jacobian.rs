@@ -41,8 +41,13 @@ fn jacobian_agrees_with_coloured_differences_on_every_case() {
             let written = case::load(&path, &[]).unwrap();
             let nonlinear = written.bladders.as_ref().is_some_and(|b| b.strain_energy.is_some());
             let unlike = written.bladders.as_ref().is_some_and(|b| !b.lower.is_mirrored());
-            let conservative = unlike || written.rotating_frame.is_some() || written.loads.iter().any(Load::is_rest);
+            let structure = written.is_structure();
+            let conservative =
+                unlike || structure || written.rotating_frame.is_some() || written.loads.iter().any(Load::is_rest);
             if (nonlinear || conservative) && sets.iter().any(|set| set.contains("published")) {
+                continue;
+            }
+            if structure && sets.iter().any(|set| set.contains("order")) {
                 continue;
             }
             let case = case::load(&path, &sets).unwrap();

@@ -374,10 +374,10 @@ fn a_fault_of_an_argument_is_shown_in_the_argument() {
      --> --set at /slover
     1 | /slover/rtol=1e-3
       | ^^^^^^^^^^^^
-      = allowed: $schema, name, about, preset, section, beam, fluid, bladders, spans, tubes, network,
-                 loads, attachments, foundation, contacts, surroundings, rotating_frame, ends, start,
-                 formulation, plausibility, effects, effects_tolerance, mesh, time, solver, companion,
-                 probes, step_response
+      = allowed: $schema, name, about, preset, section, beam, fluid, bladders, spans, beams, joints,
+                 tubes, network, loads, attachments, foundation, contacts, beam_contacts, surroundings,
+                 rotating_frame, ends, start, formulation, plausibility, effects, effects_tolerance,
+                 mesh, time, solver, companion, probes, step_response
       = nearest: did you mean "solver"?
 
     fault[E006]: -1 is out of range
