@@ -1,8 +1,8 @@
 //! Numbers of bladders in messages.
 
 use super::schema::Case;
-use super::spans;
 use super::wiring::{BladderLabels, bladder_index};
+use super::{spans, structure};
 
 /// Cause and remedy of a bladder that a case with such a segment does not have; none if there is no such segment.
 pub fn absence(case: &Case, number: i64) -> Option<(String, String)> {
@@ -17,8 +17,9 @@ pub fn absence(case: &Case, number: i64) -> Option<(String, String)> {
             let span = spans::places(case).get(index % per_row).map_or(0, |place| place.0);
             let own = case.spans.get(span).and_then(|span| span.section.as_ref());
             let rows = own.map_or("rows", |_| "section/bladders");
-            let hint = format!("change /spans/{span}/{rows}, or name other bladders; numbers count segments");
-            (format!("/spans/{span} has none in this row"), hint)
+            let at = structure::span_pointer(case, span);
+            let hint = format!("change {at}/{rows}, or name other bladders; numbers count segments");
+            (format!("{at} has none in this row"), hint)
         }
     })
 }

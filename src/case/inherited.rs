@@ -8,7 +8,7 @@ use super::origins::Origin;
 use super::own_cell::OwnCell;
 use super::scaling::{LAWS, Law, Sizes};
 use super::schema::{Case, SpanRows};
-use super::spans;
+use super::{spans, structure};
 use crate::error::{Code, listed};
 
 /// Pointer of a coefficient, and its value if it is a number.
@@ -72,7 +72,10 @@ fn in_spans(case: &Case) -> Option<String> {
     }
     names.sort_unstable();
     names.dedup();
-    let shaping: Vec<String> = shaping.iter().map(|span| format!("/spans/{span}")).collect();
+    let shaping: Vec<String> = shaping
+        .iter()
+        .map(|span| structure::span_pointer(case, *span))
+        .collect();
     (!names.is_empty()).then(|| {
         Code::Inherited.warning(format!(
             "coefficients of another shape of section: {} changes the shape to which {} belong. {EXACT} Give the \

@@ -31,6 +31,12 @@ pub fn written_span(case: &Case, pointer: &str) -> Option<String> {
     None
 }
 
+/// Pointer of a span of all beams, as it is written.
+pub fn span_pointer(case: &Case, span: usize) -> String {
+    let pointer = format!("/spans/{span}");
+    written_span(case, &pointer).unwrap_or(pointer)
+}
+
 /// A joined place as written: `"left.tip"`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Along {
