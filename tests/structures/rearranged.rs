@@ -251,3 +251,30 @@ fn a_jointed_run_closes_its_balances_and_rests_in_its_equilibrium() {
         tip[0]
     );
 }
+
+/// Goal: the energies of all beams, those of a divided one together, are the energies of the whole.
+#[test]
+fn energies_of_beams_sum_to_the_whole() {
+    let mut case = tee();
+    case["joints"][0]["at"] = json!(["a.2", "c.root"]);
+    case["beams"][1]["origin_m"] = json!([0.1, 0.0]);
+    case["beams"][1]["ends"] = json!({"root": "clamped"});
+    case["time"]["end_s"] = json!(0.01);
+    let (memory, _) = finished(&case);
+    let last = |name: &str| *memory.column(name).unwrap().last().unwrap();
+    for (parts, whole) in [
+        ("kinetic_energy", ["kinetic_energy", "rotary_energy"]),
+        ("elastic_energy", ["axial_energy", "bending_energy"]),
+    ] {
+        let sum: f64 = ["a", "rest", "c"]
+            .map(|beam| last(&format!("{beam}.{parts}")))
+            .iter()
+            .sum();
+        let whole: f64 = whole.map(last).iter().sum();
+        println!("{parts}: {sum} for {whole}");
+        assert!(
+            whole > 1e-9 && (sum - whole).abs() < 1e-12 * whole,
+            "{parts}: {sum} for {whole}"
+        );
+    }
+}

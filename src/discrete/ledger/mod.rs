@@ -14,7 +14,7 @@ pub use compressed::{area_rate, lumped_slopes, pressure_rate};
 pub use fluid::pressure_rates;
 pub use jump::{side, strokes, travel};
 pub use reactions::compared;
-pub use solid::reaction;
+pub use solid::{energies_between, reaction};
 
 use crate::case::schema::Effect;
 use serde::{Deserialize, Serialize};

@@ -1,5 +1,7 @@
 //! Contributions of the beam to the balances.
 
+use std::ops::Range;
+
 use super::{EnergyRate, Rates, StoredEnergies, add};
 use crate::case::schema::Effect;
 use crate::discrete::residual::bending::{elastic_curvature, relative_stiffness};
@@ -252,8 +254,38 @@ fn turning_rate(system: &System, w: &Workspace<f64>, c: usize) -> f64 {
 pub fn energies(system: &System, now: &TimeData, w: &Workspace<f64>) -> StoredEnergies {
     let mesh = &system.mesh;
     let sheared = system.model.effects.has(Effect::Shear);
+    let mut e = energies_between(system, now, w, 0..mesh.nodes, 0..mesh.cells);
+    if system.layout.inertia {
+        for body in &system.bodies {
+            let [kinetic, rotary] = body.energies(system, w);
+            e.kinetic += kinetic;
+            e.rotary += rotary;
+        }
+        e.rotary += system.joints.energies(now, w)[1];
+    }
+    if mesh.fourth && sheared {
+        let (sections, shape) = (&system.sections, &w.shape);
+        e.bending += fourth_order::energy_of_cells(system, &sections.shear, &shape.sections.shear);
+        if system.model.effects.has(Effect::RotaryInertia) {
+            e.rotary += fourth_order::energy_of_cells(system, &sections.rotary, &shape.angle_rate);
+        }
+    }
+    e
+}
+
+/// Kinetic and elastic energies of some nodes and cells, without bodies that turn and, on a mesh of fourth order, without those of sections
+/// that shear.
+pub fn energies_between(
+    system: &System,
+    now: &TimeData,
+    w: &Workspace<f64>,
+    nodes: Range<usize>,
+    cells: Range<usize>,
+) -> StoredEnergies {
+    let mesh = &system.mesh;
+    let sheared = system.model.effects.has(Effect::Shear);
     let mut e = StoredEnergies::default();
-    for i in 0..mesh.nodes {
+    for i in nodes {
         let length = mesh.node_lengths[i];
         if system.layout.inertia {
             let along = carried(system, now, w, i);
@@ -269,15 +301,8 @@ pub fn energies(system: &System, now: &TimeData, w: &Workspace<f64>) -> StoredEn
             0.5 * length * w.forces.moment[i] * w.forces.moment[i] / system.sections.bending[i]
         };
     }
-    if system.layout.inertia {
-        for body in &system.bodies {
-            let [kinetic, rotary] = body.energies(system, w);
-            e.kinetic += kinetic;
-            e.rotary += rotary;
-        }
-        e.rotary += system.joints.energies(now, w)[1];
-    }
-    for (c, &h) in mesh.lengths.iter().enumerate() {
+    for c in cells {
+        let h = mesh.lengths[c];
         if system.model.effects.has(Effect::AxialStretch) {
             e.axial += if mesh.is_gap(c) {
                 0.0
@@ -295,13 +320,6 @@ pub fn energies(system: &System, now: &TimeData, w: &Workspace<f64>) -> StoredEn
         }
         if system.model.effects.has(Effect::RotaryInertia) {
             e.rotary += 0.5 * h * spin(system, w, c) * turning_rate(system, w, c);
-        }
-    }
-    if mesh.fourth && sheared {
-        let (sections, shape) = (&system.sections, &w.shape);
-        e.bending += fourth_order::energy_of_cells(system, &sections.shear, &shape.sections.shear);
-        if system.model.effects.has(Effect::RotaryInertia) {
-            e.rotary += fourth_order::energy_of_cells(system, &sections.rotary, &shape.angle_rate);
         }
     }
     e

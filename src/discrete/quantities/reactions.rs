@@ -5,7 +5,7 @@ use super::probes::HistoryColumn;
 use crate::case::{Rotation, Translation};
 use crate::discrete::System;
 use crate::discrete::angle_unwrapping::{first_angle, nearest};
-use crate::discrete::ledger::reaction;
+use crate::discrete::ledger::{energies_between, reaction};
 use crate::discrete::residual::momentum::end_tangent;
 
 /// A reaction quantity of an end or of an attachment.
@@ -21,7 +21,14 @@ enum ReactionKind {
     Attached(usize, usize),
     /// Rotation of another part of a joint relative to the first one: numbers of both angles, and of the joint.
     Turned([usize; 2], usize),
+    /// Kinetic (0) or elastic (1) energy of a beam of a structure, of which the end is one.
+    Energy(usize, usize),
 }
+
+const ENERGIES: [[&str; 2]; 2] = [
+    ["kinetic_energy", "kinetic energy of the beam"],
+    ["elastic_energy", "elastic energy of the beam"],
+];
 
 /// First part of the names of quantities of the beam of an end; empty for a single beam.
 fn beam_of(system: &System, end: usize) -> String {
@@ -51,6 +58,10 @@ fn all(system: &System) -> Vec<ReactionKind> {
     }
     let hinges = system.joints.hinges.iter().enumerate();
     all.extend(hinges.map(|(k, hinge)| ReactionKind::Turned(hinge.angles, k)));
+    let structure = system.model.structure.iter();
+    let roots = structure.flat_map(|structure| structure.beams.iter().enumerate());
+    let roots = roots.filter(|(_, beam)| beam.piece.at_end[0]).map(|(k, _)| 2 * k);
+    all.extend(roots.flat_map(|root| [0, 1].map(|kind| ReactionKind::Energy(root, kind))));
     for (k, attachment) in system.model.attachments.iter().enumerate() {
         let holds = |axis: &usize| attachment.stiffness[*axis] > 0.0 || attachment.damping[*axis] > 0.0;
         all.extend((0..2).filter(holds).map(|axis| ReactionKind::Attached(k, axis)));
@@ -62,6 +73,37 @@ fn all(system: &System) -> Vec<ReactionKind> {
 fn turns_freely(system: &System, end: usize) -> bool {
     let structure = system.model.structure.as_ref();
     structure.is_none_or(|structure| structure.beams[end / 2].piece.at_end[0] && system.joints.angle_of(end).is_none())
+}
+
+/// First part of the names of quantities of an attachment, and its number on its beam, from 1.
+fn attachment(system: &System, number: usize) -> (String, usize) {
+    let Some(structure) = &system.model.structure else {
+        return (String::new(), number + 1);
+    };
+    let of = |k: &usize| structure.beams[*k].of_structure[1].contains(&number);
+    let own = (0..structure.beams.len()).find(of).unwrap_or(0);
+    let first = structure
+        .beams
+        .iter()
+        .find(|beam| beam.piece.beam == structure.beams[own].piece.beam);
+    let first = first.map_or(0, |beam| beam.of_structure[1].start);
+    (beam_of(system, 2 * own), number - first + 1)
+}
+
+/// Energy of all parts of the beam that begins at a root [J].
+fn energy(look: &StateView, root: usize, kind: usize) -> f64 {
+    let system = look.system;
+    let Some(structure) = &system.model.structure else {
+        return 0.0;
+    };
+    let beam = structure.beams[root / 2].piece.beam;
+    let own = structure.beams.iter().zip(&system.mesh.beams);
+    let own = own.filter(|(one, _)| one.piece.beam == beam).map(|(_, ranges)| {
+        let (nodes, cells) = (ranges.nodes.clone(), ranges.cells.clone());
+        let e = energies_between(system, look.now, &look.w, nodes, cells);
+        [e.kinetic + e.rotary, e.axial + e.bending][kind]
+    });
+    own.sum()
 }
 
 /// Columns of the reaction quantities of a system.
@@ -99,15 +141,18 @@ pub fn columns(system: &System) -> impl Iterator<Item = HistoryColumn> {
                 "rad",
                 "rotation of the hinge: of the further beam relative to the first one".to_owned(),
             ),
-            ReactionKind::Attached(k, axis) => (
-                format!("reaction_attachment_{}_{}", k + 1, AXES[axis]),
-                "N",
-                format!(
-                    "force in {} of springs and dashpots of attachment {}",
-                    AXES[axis],
-                    k + 1
-                ),
-            ),
+            ReactionKind::Energy(root, kind) => {
+                let [name, about] = ENERGIES[kind];
+                (format!("{}{name}", of(root)), "J", about.to_owned())
+            }
+            ReactionKind::Attached(k, axis) => {
+                let (beam, number) = attachment(system, k);
+                (
+                    format!("{beam}reaction_attachment_{number}_{}", AXES[axis]),
+                    "N",
+                    format!("force in {} of springs and dashpots of attachment {number}", AXES[axis]),
+                )
+            }
         };
         HistoryColumn { name, unit, about }
     })
@@ -127,6 +172,7 @@ pub fn values(look: &StateView, put: &mut impl FnMut(f64)) {
                 nearest(tangent.x.atan2(tangent.z), first_angle(system, now, w, k / 2))
             }
             ReactionKind::Turned([first, other], _) => w.shape.joints.angle[other] - w.shape.joints.angle[first],
+            ReactionKind::Energy(root, kind) => energy(look, root, kind),
             ReactionKind::Attached(k, axis) => {
                 let own = system.attached.iter().filter(|attached| attached.number == k);
                 own.map(|a| a.spring(w)[axis] + a.dashpot(w)[axis]).sum()
