@@ -86,18 +86,33 @@ impl Places<'_> {
         piece.origin + piece.turned(along)
     }
 
-    /// True for beams that are the same, or joined to each other.
-    fn related(&self, one: usize, other: usize) -> bool {
+    /// Place of a node along its whole beam [m].
+    fn along(&self, node: usize) -> f64 {
+        let piece = self.mesh.beam_of_node(node);
+        let structure = self.model.structure.as_ref();
+        let from = structure.map_or(0.0, |structure| structure.beams[piece].piece.from);
+        from + self.mesh.node_coordinate(node)
+    }
+
+    /// Length of the way from one node to another along their beams, through a joint if the beams are two; none if no joint connects them [m].
+    fn way(&self, one: usize, other: usize) -> Option<f64> {
         let beams = [self.beam(one), self.beam(other)];
-        let Some(structure) = &self.model.structure else {
-            return true;
-        };
-        let joins = |beam: usize, ends: &[usize]| ends.iter().any(|end| structure.beams[end / 2].piece.beam == beam);
-        let joints = structure.joints.iter().map(|joint| joint.ends().collect::<Vec<_>>());
-        beams[0] == beams[1]
-            || joints
-                .into_iter()
-                .any(|ends| beams.iter().all(|beam| joins(*beam, &ends)))
+        let within = (beams[0] == beams[1]).then(|| (self.along(one) - self.along(other)).abs());
+        let joints = self.model.structure.iter().flat_map(|structure| &structure.joints);
+        let ways = joints.filter_map(|joint| {
+            let nearest = |node: usize, beam: usize| {
+                let ends = joint.ends().map(|end| {
+                    let both = self.mesh.beams[end / 2].ends();
+                    both[end % 2].node
+                });
+                let own = ends.filter(|end| self.beam(*end) == beam);
+                let ways = own.map(|end| ((self.along(node) - self.along(end)).abs(), end));
+                ways.min_by(|a, b| a.0.total_cmp(&b.0))
+            };
+            let (near, far) = (nearest(one, beams[0])?, nearest(other, beams[1])?);
+            Some(near.0 + far.0 + (self.at(near.1) - self.at(far.1)).squared().sqrt())
+        });
+        within.into_iter().chain(ways).reduce(f64::min)
     }
 
     /// True if a contact is that of these nodes' beams.
@@ -114,12 +129,16 @@ impl Places<'_> {
         let fiber = &self.sections.farthest_fiber;
         let mut all: Vec<Range<usize>> = vec![];
         for cell in (0..self.mesh.cells).filter(|cell| !self.mesh.is_gap(*cell)) {
+            if !self.concerns(law, node, cell) {
+                continue;
+            }
             let near = |end: usize| {
-                let least = FRAC_PI_2 * (fiber[node] + fiber[end]);
-                (self.at(end) - self.at(node)).squared().sqrt() < least
+                let reach = fiber[node] + fiber[end];
+                let apart = (self.at(end) - self.at(node)).squared().sqrt();
+                self.way(node, end)
+                    .is_some_and(|way| way < FRAC_PI_2 * reach || apart < reach)
             };
-            let excluded = self.related(node, cell) && (near(cell) || near(cell + 1));
-            if excluded || !self.concerns(law, node, cell) {
+            if near(cell) || near(cell + 1) {
                 continue;
             }
             match all.last_mut().filter(|range| range.end == cell) {

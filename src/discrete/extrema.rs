@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 use super::angle_unwrapping::tip_angle;
 use super::quantities::evaluate;
 use super::workspace::Motion;
-use super::{CompleteState, FluidMesh, System, TimeData, Workspace, contact_points, crossing, ledger};
+use super::{CompleteState, FluidMesh, System, TimeData, Workspace, beam_contacts, contact_points, crossing, ledger};
 use crate::discrete::residual::bending::{elastic_curvature, relative_stiffness};
 use crate::discrete::residual::solid::node_stretch;
 use crate::discrete::residual::{nonlinear, relaxation};
@@ -139,7 +139,11 @@ impl MonitoredValues {
             ),
         ];
         g.moving[MonitoredQuantity::Outermost as usize] = nonlinear::outermost(system, w);
-        g.moving[MonitoredQuantity::Depth as usize] = contact_points::deepest(system, w);
+        let between = beam_contacts::deepest(system, w);
+        g.moving[MonitoredQuantity::Depth as usize] = match contact_points::deepest(system, w) {
+            [depth, _] if depth < between => [between, 0.0],
+            deepest => deepest,
+        };
         (g.thinnest, g.thinnest_at) = evaluate::thinnest(system, now, w);
         g.crossing = crossing::first(system, w);
         g.bent = bent(system, now, w);

@@ -2,7 +2,9 @@
 
 use std::ops::Range;
 
-use super::{EffectSet, Model, Scales, Section, Wet, mean_section};
+use super::attachments::{ForceDirection, PointForce};
+use super::loads::{LoadKind, LoadMeasure};
+use super::{DistributedLoad, EffectSet, Model, Scales, Section, Wet, mean_section};
 use crate::case::schema::{Attachment, Case, Contact, ElasticJoint, Hinge, JointKind, Load};
 use crate::case::structure::{self, Piece};
 use crate::functions::Signal;
@@ -74,8 +76,6 @@ impl Structure {
             own.probes
                 .iter_mut()
                 .for_each(|probe| probe.name = format!("{name}.{}", probe.name));
-            own.loads
-                .extend(case.loads.iter().flat_map(|load| along_own_axes(load, &piece)));
             // the mass of a body acts at the end of its joint
             own.attachments.extend(
                 bodies
@@ -91,7 +91,11 @@ impl Structure {
                 .iter()
                 .map(|contact| in_own_axes(contact, &piece, case))
                 .collect();
-            let model = Model::from_parts(&own, mean_section(&own), None, effects.clone());
+            let mut model = Model::from_parts(&own, mean_section(&own), None, effects.clone());
+            add_loads(case, &piece, &mut model);
+            // sizes of motion depend on the loads of the case as well
+            own.loads
+                .extend(case.loads.iter().flat_map(|load| along_own_axes(load, &piece)));
             let counts = [model.loads.len(), model.attachments.len(), model.contacts.len()];
             let of_structure = [0, 1, 2].map(|k| firsts[k]..firsts[k] + counts[k]);
             firsts = [0, 1, 2].map(|k| of_structure[k].end);
@@ -153,6 +157,58 @@ impl Structure {
     pub fn place_of(&self, end: usize) -> Planar<f64> {
         self.beams[end / 2].piece.end(end % 2 == 1)
     }
+}
+
+/// Adds the loads of the case to a beam and its masses, along its axes. Their signals remain those of the case.
+fn add_loads(case: &Case, piece: &Piece, model: &mut Model) {
+    let section = model.section;
+    for written in &case.loads {
+        let loads = DistributedLoad::resolve(written, &section);
+        model
+            .loads
+            .extend(loads.into_iter().flat_map(|load| turned(load, piece)));
+        for body in model
+            .attachments
+            .iter_mut()
+            .filter(|body| body.mass > 0.0 && written.is_body())
+        {
+            let loads = DistributedLoad::on(written, [body.mass; 2]);
+            let at = body.at;
+            body.forces.extend(
+                loads
+                    .into_iter()
+                    .flat_map(|load| turned(load, piece))
+                    .map(|load| PointForce {
+                        axis: usize::from(load.kind == LoadKind::ForceZ),
+                        acting: ForceDirection::Weight,
+                        factor: load.factor * load.profile.value(at),
+                        signal: load.signal,
+                    }),
+            );
+        }
+    }
+}
+
+/// Parts of a load along the axes of a beam.
+fn turned(load: DistributedLoad, piece: &Piece) -> Vec<DistributedLoad> {
+    let direction = match load.kind {
+        LoadKind::ForceX => Planar { x: 1.0, z: 0.0 },
+        LoadKind::ForceZ => Planar { x: 0.0, z: 1.0 },
+        _ => return vec![load],
+    };
+    let own = piece.own(direction);
+    let part = |(kind, share): (LoadKind, f64)| DistributedLoad {
+        kind,
+        factor: load.factor * share,
+        per: match load.per {
+            LoadMeasure::Length => LoadMeasure::Length,
+            LoadMeasure::Mass(acceleration) => LoadMeasure::Mass(acceleration * share),
+            LoadMeasure::Weight(acceleration) => LoadMeasure::Weight(acceleration * share),
+        },
+        ..load.clone()
+    };
+    let parts = [(LoadKind::ForceX, own.x), (LoadKind::ForceZ, own.z)];
+    parts.into_iter().filter(|(_, share)| *share != 0.0).map(part).collect()
 }
 
 /// A load along the axes of the case, along those of a beam.

@@ -4,7 +4,7 @@ use super::time::END;
 use crate::case::faults::Violations;
 use crate::case::locate::child;
 use crate::case::numbers::plain;
-use crate::case::schema::{Case, ChainEnd, Formulation};
+use crate::case::schema::{Case, ChainEnd, End, Formulation};
 use crate::error::numbers::counted;
 use crate::error::{Code, Violation};
 use crate::functions::MOST_KNOTS;
@@ -99,6 +99,30 @@ pub(super) fn check(case: &Case, faults: &mut Violations) {
 /// All signals of a case, each with its pointer and its role.
 fn signals(case: &Case) -> Vec<(String, Role, &Signal)> {
     let mut all = vec![];
+    for (k, beam) in case.beams.iter().enumerate() {
+        for (end, name) in beam.ends.both().into_iter().zip(["root", "tip"]) {
+            let Some((form, given)) = end.map(End::form) else {
+                continue;
+            };
+            let role = |key: &str| match ["u1_m", "u3_m", "slope_rad"].contains(&key) {
+                true => Role::Motion,
+                false => Role::Other,
+            };
+            let given = given.given();
+            all.extend(given.map(|(key, signal)| (format!("/beams/{k}/ends/{name}/{form}/{key}"), role(key), signal)));
+        }
+        for (i, load) in beam.loads.iter().enumerate() {
+            let load = load.distributed();
+            all.extend(
+                load.map(|(key, load)| (format!("/beams/{k}/loads/{i}/{key}/signal"), Role::Other, &load.signal)),
+            );
+        }
+        for (i, attachment) in beam.attachments.iter().enumerate() {
+            let forces = attachment.forces();
+            let at = |key| format!("/beams/{k}/attachments/{i}/{key}");
+            all.extend(forces.map(|(key, signal)| (at(key), Role::Other, signal)));
+        }
+    }
     for (end, name) in [(&case.ends.root, "root"), (&case.ends.tip, "tip")] {
         let (form, given) = end.form();
         for (key, signal) in given.given() {

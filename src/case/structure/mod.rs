@@ -13,6 +13,9 @@ pub use pieces::{Piece, Place, origins, pieces};
 
 /// Pointer of a value of a span of all beams, as it is written in its beam; none for other pointers.
 pub fn written_span(case: &Case, pointer: &str) -> Option<String> {
+    if pointer == "/spans" {
+        return Some("/beams".into());
+    }
     let rest = pointer.strip_prefix("/spans/")?;
     let (number, rest) = rest
         .split_once('/')

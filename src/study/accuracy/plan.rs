@@ -45,7 +45,7 @@ pub fn unrecorded(case: &Case) -> Case {
 pub fn of_best_order(case: &Case) -> Case {
     let mut fourth = case.clone();
     fourth.mesh.order.get_or_insert(4);
-    if System::new(&fourth).is_ok() {
+    if !case.is_structure() && System::new(&fourth).is_ok() {
         fourth
     } else {
         case.clone()
