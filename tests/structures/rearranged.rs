@@ -278,3 +278,25 @@ fn energies_of_beams_sum_to_the_whole() {
         );
     }
 }
+
+/// Goal: a signal of a load of the case is one input of all beams, whatever their angles: a turned structure with a turned load responds alike.
+#[test]
+fn an_input_acts_on_all_beams() {
+    let of = |turn: f64, axis: &str| {
+        let stem = clamped(part("a", turn, 3));
+        let arm = part("c", 70.0 + turn, 2);
+        let mut case = wet(
+            vec![stem, arm],
+            vec![joint("rigid", &["a.tip", "c.root"])],
+            &["a:1", "a:2", "a:3", "c:1", "c:2"],
+        );
+        case["loads"] = json!([{axis: {"signal": {"sine": {"amplitude": 1.0, "frequency_hz": 3.0}}}}]);
+        let case = parse(&case);
+        let mut system = slcbeam::discrete::System::new(&case).unwrap();
+        let signal = case.loads[0].distributed().unwrap().1.signal.clone();
+        (system.places_of(&signal).len(), system.loads.len())
+    };
+    // two components on each beam, of which those across a turned axis vanish
+    assert_eq!(of(20.0, "force_x_n_m"), (8, 4));
+    assert_eq!(of(0.0, "force_x_n_m"), (6, 3));
+}

@@ -114,3 +114,26 @@ fn a_rolled_strip_lies_on_itself() {
     assert!(through > 0.01, "{through}");
     assert!(force > 0.1 && deepest > 0.0 && deepest < 4e-3, "{force} {deepest}");
 }
+
+/// Goal: fingers of one palm, closer to each other than half a turn, touch away from it.
+#[test]
+fn fingers_of_one_palm_touch() {
+    let mut palm = held(beam("palm", 0.05, 0.0, 2), "root", json!("clamped"));
+    palm["origin_m"] = json!([0.0125, -0.05]);
+    palm["beam"] = json!({"young_modulus_pa": 1e9});
+    let fingers = [("left", 0.0, 40.0), ("right", 0.025, -40.0)].map(|(name, x, load)| {
+        let mut own = beam(name, 0.4, 0.0, 16);
+        own["origin_m"] = json!([x, 0.0]);
+        own["loads"] = json!([{"force_x_n_m": {"signal": load}}]);
+        own
+    });
+    let [left, right] = fingers;
+    let joints = vec![crate::plans::joint("rigid", &["palm.tip", "left.root", "right.root"])];
+    let mut case = structure(strip(), vec![palm, left, right], joints);
+    case["beam_contacts"] = json!([touching(json!(["left", "right"]))]);
+    let last = at_rest(&case);
+    let apart = last("right.tip_x") - last("left.tip_x");
+    println!("{apart} m apart, {} N", last("beam_contact_both_normal_force"));
+    assert!((0.0175..0.02).contains(&apart), "{apart}");
+    assert!(last("beam_contact_both_normal_force") > 1.0);
+}
