@@ -9,8 +9,9 @@ pub fn figure_name(figure: &str) -> String {
 }
 
 /// Endings of keys and their units, the longer ones first.
-const ENDS: [(&str, &str); 39] = [
+const ENDS: [(&str, &str); 40] = [
     ("m2_per_n_m", "m^2/(N m)"),
+    ("n_m_s_rad", "N m s/rad"),
     ("m2_per_pa", "m^2/Pa"),
     ("m2_per_n", "m^2/N"),
     ("m3_s_pa", "m^3/(s Pa)"),
@@ -74,7 +75,7 @@ pub fn key_unit(key: &str) -> Option<(&str, &'static str)> {
     })?;
     // `_n_m` is a force per length or a stiffness unless it is a moment
     let unit = match unit {
-        "N m" if end.starts_with("force") || end.starts_with("stiffness") => "N/m",
+        "N m" if end.starts_with("force") || end.contains("stiffness") => "N/m",
         unit => unit,
     };
     Some((end.trim_end_matches('_'), unit))
