@@ -124,6 +124,7 @@ impl Uncertain {
             accuracy: None,
             from: None,
             meshes,
+            waves: meshes,
         };
         let stop = || self.stopped();
         let found = || analysis::found(case, ask, &stop, &|case| analysis::run(case, ask, &stop));

@@ -110,6 +110,10 @@ pub trait Recorder {
     fn checkpoint(&mut self, _: &Checkpoint) -> Result<()> {
         Ok(())
     }
+    /// False for figures alone: states are not examined for growing waves, which takes longer than a short run.
+    fn examines_waves(&self) -> bool {
+        true
+    }
     /// Receives the history of the companion of a run that has finished.
     fn companion(&mut self, _: &ThinnedRows) -> Result<()> {
         Ok(())
@@ -189,7 +193,19 @@ impl<F: FnMut(&Progress) -> Control> Recorder for Unrecorded<F> {
     }
 }
 
-/// Recorder that keeps thinned rows of the history and decides if the run continues.
+/// The same for runs of which only the figures count, [`Recorder::examines_waves`].
+pub struct FiguresAlone<F: FnMut(&Progress) -> Control>(pub F);
+
+impl<F: FnMut(&Progress) -> Control> Recorder for FiguresAlone<F> {
+    fn progress(&mut self, progress: &Progress) -> Result<Control> {
+        Ok((self.0)(progress))
+    }
+    fn examines_waves(&self) -> bool {
+        false
+    }
+}
+
+/// Recorder that keeps thinned rows of the history and its figures alone, and decides if the run continues.
 pub struct ThinnedRecorder<F: FnMut(&Progress) -> Control> {
     /// Decision.
     pub hook: F,
@@ -201,6 +217,9 @@ impl<F: FnMut(&Progress) -> Control> Recorder for ThinnedRecorder<F> {
     fn begin(&mut self, header: &Header) -> Result<()> {
         self.rows = ThinnedRows::new(&header.columns);
         Ok(())
+    }
+    fn examines_waves(&self) -> bool {
+        false
     }
     fn history(&mut self, row: &[f64]) -> Result<()> {
         self.rows.push(row);

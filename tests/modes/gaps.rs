@@ -22,6 +22,7 @@ fn figures(case: &Case, meshes: bool) -> AnalysisOutcome {
         accuracy: None,
         from: None,
         meshes,
+        waves: false,
     };
     found(case, ask, &|| false, &|_| unreachable!("no run is needed")).unwrap()
 }

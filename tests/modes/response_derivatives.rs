@@ -192,6 +192,7 @@ fn responses_of_designs_have_names_errors_and_derivatives() {
             accuracy: None,
             from: None,
             meshes,
+            waves: false,
         };
         analysis::found(case, ask, &|| false, &|_| unreachable!("no run is needed")).unwrap()
     };

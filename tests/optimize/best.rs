@@ -26,6 +26,7 @@ fn figure(case: &Case, what: AnalysisKind, changes: &[(&str, f64)], name: &str) 
         accuracy: None,
         from: None,
         meshes: false,
+        waves: false,
     };
     let found = analysis::found(&case, ask, &|| false, &|case| analysis::run(case, ask, &|| false));
     found.expect("no interruption").figure(name).expect("a figure")

@@ -41,6 +41,7 @@ fn figure(case: &Case, viscosity: f64, name: &str) -> f64 {
         accuracy: None,
         from: None,
         meshes: false,
+        waves: false,
     };
     let found = analysis::found(&case, ask, &|| false, &|_| unreachable!("no run is needed"));
     found.expect("a result").figure(name).expect("the figure")

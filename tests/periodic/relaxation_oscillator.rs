@@ -219,6 +219,7 @@ fn designs_have_periods_of_their_own() {
             accuracy: None,
             from: None,
             meshes: false,
+            waves: false,
         };
         found(&case, ask, &|| false, &|_| unreachable!("no run is needed"))
     };

@@ -32,6 +32,9 @@ use source::DesignSource;
 /// Largest number of designs that are checked before the first is computed.
 const CHECKED: usize = 10_000;
 
+/// Every how many designs one is examined for growing waves, which takes longer than a short run.
+const WAVES_EVERY: usize = 16;
+
 /// Largest number of threads.
 const MOST_AT_ONCE: usize = 1024;
 
@@ -214,6 +217,7 @@ fn compute_all(
         accuracy: plan.accuracy,
         from: None,
         meshes: plan.mesh_errors,
+        waves: true,
     };
     // searches begin with the setting of the first design, whichever designs are left
     let searches = ask.accuracy.is_some() && *ask.what == AnalysisKind::Run && !left.is_empty();
@@ -227,6 +231,10 @@ fn compute_all(
     let mut counter = Counter::new(asked.result.quiet, "done", left.len());
     let unkept: Mutex<Option<Error>> = Mutex::new(None);
     let work = |number: usize| {
+        let ask = AnalysisRequest {
+            waves: number.is_multiple_of(WAVES_EVERY),
+            ..ask
+        };
         let begin = Instant::now();
         if stop() {
             return None;

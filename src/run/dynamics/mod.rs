@@ -76,16 +76,6 @@ pub fn run_at(
     run.go(dae, None, recorder)
 }
 
-/// Runs the system of a case for its figures alone: states are not examined for growing waves, which takes longer than a short run.
-///
-/// # Errors
-/// As [`run_with`].
-pub fn figures(case: &Case, system: System, recorder: &mut dyn Recorder) -> Result<Outcome> {
-    let (mut run, dae) = Run::new(case, system, DerivativeParameters::pointers(&[]))?;
-    run.waves = None;
-    run.go(dae, None, recorder)
-}
-
 /// Goes on with the system of a case from a checkpoint of it; the recorder holds what was recorded before.
 pub fn resume(case: &Case, system: System, checkpoint: &Checkpoint, recorder: &mut dyn Recorder) -> Result<Outcome> {
     checkpoint.fits(case, &system)?;
@@ -250,6 +240,7 @@ impl<'a> Run<'a> {
 
 impl Run<'_> {
     fn go(mut self, mut dae: BeamDae, from: Option<&Checkpoint>, recorder: &mut dyn Recorder) -> Result<Outcome> {
+        self.waves.take_if(|_| !recorder.examines_waves());
         self.prepare(&dae);
         self.spent(|wall| &mut wall.set_up);
         let (t, first_stop) = match from {

@@ -177,7 +177,7 @@ fn transient(case: &Case, scene: &PeriodicScene) -> Result<Vec<f64>> {
         stop: scene.stop.clone(),
         y: None,
     };
-    let outcome = dynamics::figures(&run, system.clone(), &mut recorder)?;
+    let outcome = dynamics::run_with(&run, system.clone(), &[], &mut recorder)?;
     let energies = &outcome.summary.balances.energy_j;
     let lost = |name: &str| name.starts_with("dissipated") || name == "harvested";
     let lost = energies.iter().filter(|(name, _)| lost(name)).map(|(_, x)| x.abs());
@@ -202,6 +202,9 @@ struct FirstCheckpoint {
 }
 
 impl Recorder for FirstCheckpoint {
+    fn examines_waves(&self) -> bool {
+        false
+    }
     fn progress(&mut self, _: &Progress) -> Result<Control> {
         Ok(match self.y.is_some() || self.stop.raised() {
             true => Control::Stop(crate::run::stop::INTERRUPTED.into()),

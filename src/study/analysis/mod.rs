@@ -37,7 +37,7 @@ use crate::case::parameter::Parameter;
 use crate::discrete::System;
 use crate::error::{Code, Result};
 use crate::run::dynamics::{self, Outcome};
-use crate::run::record::{Control, Progress, Unrecorded};
+use crate::run::record::{Control, FiguresAlone, Progress, Recorder, Unrecorded};
 use crate::run::summary::{Accuracy, Status};
 use crate::study::evaluations::Evaluations;
 use crate::study::refine::{self, meshes};
@@ -198,6 +198,8 @@ pub struct AnalysisRequest<'a> {
     pub from: Option<target::ReachedSetting>,
     /// True if errors are estimated: for runs by a companion, for other analyses by two or three meshes.
     pub meshes: bool,
+    /// True if states of runs are examined for growing waves.
+    pub waves: bool,
 }
 
 /// Computes the figures of a case; `run` runs it in time, if the analysis needs that. `None` if `stop` became true
@@ -238,11 +240,15 @@ pub fn run(case: &Case, ask: AnalysisRequest, stop: &dyn Fn() -> bool) -> Result
             false => Control::Continue,
         }
     };
+    let recorder: &mut dyn Recorder = match ask.waves {
+        true => &mut Unrecorded(hook),
+        false => &mut FiguresAlone(hook),
+    };
     match ask.accuracy {
-        None if ask.meshes => target::effects::run(case, &mut Unrecorded(hook)),
-        None => dynamics::run(case, &mut Unrecorded(hook)),
+        None if ask.meshes => target::effects::run(case, recorder),
+        None => dynamics::run(case, recorder),
         Some(accuracy) => target::reach(case, accuracy, ask.from.as_ref(), &mut |case, accuracy| {
-            companion::measured(case, System::new(case)?, accuracy, &mut Unrecorded(hook))
+            companion::measured(case, System::new(case)?, accuracy, recorder)
         }),
     }
 }

@@ -8,7 +8,7 @@ use crate::discrete::System;
 use crate::discrete::quantities::{Interest, InterestSource, probes};
 use crate::error::{Code, Result};
 use crate::run::dynamics;
-use crate::run::record::Unrecorded;
+use crate::run::record::FiguresAlone;
 use crate::run::summary::{Quantity, Status, Summary};
 
 /// `slcbeam run`.
@@ -36,7 +36,7 @@ impl Analysis for Run {
         stop: &dyn Fn() -> bool,
     ) -> Result<(AnalysisOutcome, FigureSlopes)> {
         let system = alike_or_own(case, alike)?;
-        let outcome = dynamics::run_with(case, system, parameters, &mut Unrecorded(until(stop)))?;
+        let outcome = dynamics::run_with(case, system, parameters, &mut FiguresAlone(until(stop)))?;
         let all = of_summary(&outcome.summary, parameters);
         Ok((of_run(&outcome.summary), all.whole()))
     }

@@ -314,7 +314,7 @@ fn finish(variant: &Variant, limits: &Limits) -> std::result::Result<(Summary, T
         },
         rows: ThinnedRows::default(),
     };
-    let outcome = dynamics::figures(&variant.case, system, &mut recorder);
+    let outcome = dynamics::run_with(&variant.case, system, &[], &mut recorder);
     let summary = outcome.map_err(|error| error.to_string())?.summary;
     // the work of the other run decides, not the time that either takes
     while limits.work() == u64::MAX && !limits.is_cancelled() {

@@ -356,6 +356,7 @@ fn of_the_model(problem: &FitProblem, case: &Case, stop: &(dyn Fn() -> bool + Sy
         accuracy: None,
         from: None,
         meshes: true,
+        waves: true,
     };
     let found = || analysis::found(case, ask, stop, &|case| analysis::run(case, ask, stop));
     let found = analysis::stored(&problem.evaluations, &"check", stop, found);

@@ -8,7 +8,7 @@ use crate::case::Case;
 use crate::case::parameter::{Parameter, STEPS, change};
 use crate::error::{Error, Result};
 use crate::run::dynamics::{self, Outcome};
-use crate::run::record::Unrecorded;
+use crate::run::record::FiguresAlone;
 use crate::run::summary::Status;
 use crate::study::analysis::AnalysisOutcome;
 use crate::study::analysis::derivatives;
@@ -192,6 +192,7 @@ fn computed(
         accuracy: None,
         from: None,
         meshes: false,
+        waves: false,
     };
     let run = |case: &Case| run(problem, case, stop);
     let found = analysis::found(&case, ask, stop, &run).ok_or("interrupted")?;
@@ -200,7 +201,7 @@ fn computed(
 
 fn run(problem: &OptimizationProblem, case: &Case, stop: &dyn Fn() -> bool) -> Result<Outcome> {
     let system = derivatives::alike_or_own(case, problem.system.as_ref())?;
-    dynamics::run_with(case, system, &[], &mut Unrecorded(derivatives::until(stop)))
+    dynamics::run_with(case, system, &[], &mut FiguresAlone(derivatives::until(stop)))
 }
 
 /// Selects the figures of goal and limits from the result of a design.

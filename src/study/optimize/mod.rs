@@ -219,6 +219,7 @@ fn check(problem: &OptimizationProblem, case: &Case, stop: &dyn Fn() -> bool) ->
         accuracy: None,
         from: None,
         meshes: true,
+        waves: true,
     };
     let found = || analysis::found(case, ask, stop, &|case| analysis::run(case, ask, stop));
     analysis::stored(&problem.evaluations, &("check", &case.name), stop, found)
