@@ -353,6 +353,7 @@ const INDEX: &[(&str, &str, &str)] = &[
         "tests/structures/touching.rs",
         "beams_pressed_together_overlap_by_the_law",
     ),
+    ("[E108]", "tests/structures/ledgers.rs", "ledgers_of_beams_close"),
 ];
 
 #[test]

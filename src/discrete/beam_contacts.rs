@@ -3,7 +3,9 @@
 use std::f64::consts::FRAC_PI_2;
 use std::ops::Range;
 
+use super::cell_boxes::CellBoxes;
 use super::ledger::EnergyRate;
+use super::structure::rest_position;
 use super::{BeamMesh, MeshSections, System, Workspace};
 use crate::model::contact::{ContactForces, PressingLaw};
 use crate::model::{BeamContactLaw, Model};
@@ -75,15 +77,7 @@ impl Places<'_> {
     }
 
     fn at(&self, node: usize) -> Planar<f64> {
-        let along = Planar {
-            x: 0.0,
-            z: self.mesh.node_coordinate(node),
-        };
-        let Some(structure) = &self.model.structure else {
-            return along;
-        };
-        let piece = &structure.beams[self.mesh.beam_of_node(node)].piece;
-        piece.origin + piece.turned(along)
+        rest_position(self.model, self.mesh, node)
     }
 
     /// Place of a node along its whole beam [m].
@@ -135,8 +129,11 @@ impl Places<'_> {
             let near = |end: usize| {
                 let reach = fiber[node] + fiber[end];
                 let apart = (self.at(end) - self.at(node)).squared().sqrt();
-                self.way(node, end)
-                    .is_some_and(|way| way < FRAC_PI_2 * reach || apart < reach)
+                // a way is no shorter than the straight line
+                apart < 2.0 * reach
+                    && self
+                        .way(node, end)
+                        .is_some_and(|way| way < FRAC_PI_2 * reach || apart < reach)
             };
             if near(cell) || near(cell + 1) {
                 continue;
@@ -168,23 +165,37 @@ impl MeshBeamContact {
         model.beam_contacts.iter().map(of).collect()
     }
 
-    /// The nearest cell to a node, and the depth [m]; none if the surfaces do not overlap, with `apart` the nearest one anyway.
-    fn nearest(&self, system: &System, point: &TouchingNode, at: &[Planar<f64>], apart: bool) -> Option<(usize, f64)> {
-        let x = at[point.node];
+    /// The deepest overlap of a node with a cell, and the cell [m].
+    fn overlap(&self, system: &System, point: &TouchingNode, boxes: &CellBoxes) -> Option<(usize, f64)> {
+        let own = |cell: &usize| point.cells.iter().any(|range| range.contains(cell));
+        let near = boxes.near(boxes.places[point.node], system.sections.farthest_fiber[point.node]);
+        Self::nearest(system, point.node, near.filter(own), &boxes.places, 0.0)
+    }
+
+    /// The nearest of some cells to a node, and the depth there [m]; none if it is not above `least`.
+    fn nearest(
+        system: &System,
+        node: usize,
+        cells: impl Iterator<Item = usize>,
+        at: &[Planar<f64>],
+        least: f64,
+    ) -> Option<(usize, f64)> {
+        let x = at[node];
         let mut found: Option<(usize, f64)> = None;
-        for cell in point.cells.iter().cloned().flatten() {
+        for cell in cells {
             let [a, b] = [at[cell], at[cell + 1]];
-            let reach = reach(system, point.node, cell);
+            let reach = reach(system, node, cell);
             // no nearer than its middle less half its length
             let (middle, half) = ((a + b) * 0.5, 0.5 * (b - a).squared().sqrt());
-            let least = (x - middle).squared().sqrt() - half;
-            let deepest = reach - least;
-            let bound = found.map_or(if apart { f64::NEG_INFINITY } else { 0.0 }, |(_, depth)| depth);
-            if deepest <= bound {
+            let deepest = reach - ((x - middle).squared().sqrt() - half);
+            let bound = found.map_or(least, |(_, depth)| depth);
+            if deepest < bound {
                 continue;
             }
             let depth = touch(x, [a, b], reach).depth;
-            if depth > bound {
+            // of equal ones the first, whatever the order of the cells
+            let first = found.is_some_and(|(before, _)| depth == bound && cell < before);
+            if depth > bound || first {
                 found = Some((cell, depth));
             }
         }
@@ -224,28 +235,19 @@ pub fn forces<T: Scalar>(system: &System, w: &mut Workspace<T>) {
     let mut between = std::mem::take(&mut w.forces.between);
     between.fill([Planar::zero(); 2]);
     let symbolic = w.motion.u.first().is_some_and(|u| u.x.value().is_none());
-    let mut at = std::mem::take(&mut w.forces.places);
-    for (node, at) in at.iter_mut().enumerate() {
-        *at = plain(system.place(&w.motion.u, node));
-    }
+    let mut boxes = std::mem::take(&mut w.forces.boxes);
+    boxes.update(system, &w.motion.u);
     for contact in &system.beam_contacts {
         for point in &contact.points {
             if symbolic {
                 let all = point.cells.iter().cloned().flatten();
                 all.for_each(|cell| press(system, w, contact, point, cell, &mut between));
-            } else if let Some((cell, _)) = contact.nearest(system, point, &at, false) {
+            } else if let Some((cell, _)) = contact.overlap(system, point, &boxes) {
                 press(system, w, contact, point, cell, &mut between);
             }
         }
     }
-    (w.forces.between, w.forces.places) = (between, at);
-}
-
-fn plain<T: Scalar>(v: Planar<T>) -> Planar<f64> {
-    Planar {
-        x: v.x.value().unwrap_or(0.0),
-        z: v.z.value().unwrap_or(0.0),
-    }
+    (w.forces.between, w.forces.boxes) = (between, boxes);
 }
 
 /// Forces of a node on a cell.
@@ -305,15 +307,9 @@ pub fn energy(system: &System, w: &Workspace<f64>) -> f64 {
 
 /// Visits every node of a contact that overlaps another beam, with its depth [m].
 fn visit(system: &System, w: &Workspace<f64>, mut each: impl FnMut(&MeshBeamContact, &TouchingNode, f64)) {
-    if system.beam_contacts.is_empty() {
-        return;
-    }
-    let at: Vec<_> = (0..system.mesh.nodes)
-        .map(|node| system.place(&w.motion.u, node))
-        .collect();
     for contact in &system.beam_contacts {
         for point in &contact.points {
-            if let Some((_, depth)) = contact.nearest(system, point, &at, false) {
+            if let Some((_, depth)) = contact.overlap(system, point, &w.forces.boxes) {
                 each(contact, point, depth);
             }
         }
@@ -323,15 +319,14 @@ fn visit(system: &System, w: &Workspace<f64>, mut each: impl FnMut(&MeshBeamCont
 /// Result of the contact with this number.
 pub fn felt(system: &System, w: &Workspace<f64>, number: usize) -> BeamContactResult {
     let contact = &system.beam_contacts[number];
-    let at: Vec<_> = (0..system.mesh.nodes)
-        .map(|node| system.place(&w.motion.u, node))
-        .collect();
     let mut felt = BeamContactResult {
         normal: 0.0,
         depth: f64::NEG_INFINITY,
     };
     for point in &contact.points {
-        if let Some((cell, depth)) = contact.nearest(system, point, &at, true) {
+        let (cells, at) = (point.cells.iter().cloned().flatten(), &w.forces.boxes.places);
+        let nearest = MeshBeamContact::nearest(system, point.node, cells, at, f64::NEG_INFINITY);
+        if let Some((cell, depth)) = nearest {
             felt.depth = felt.depth.max(depth);
             let (forces, touch) = pressed(system, w, contact, point.node, cell);
             felt.normal += point.measure * (forces.elastic + forces.damping).dot(touch.normal);

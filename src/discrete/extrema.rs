@@ -128,16 +128,7 @@ impl MonitoredValues {
         (g.deflection, g.moved) = moved(system, w);
         let (strain, node) = evaluate::largest_strain(system, now, w);
         g.strained = node;
-        g.moving[MonitoredQuantity::Strain as usize] = [
-            strain,
-            strain_rate(
-                now,
-                node,
-                system.mesh.nodes - 1,
-                system.sections.fiber_of_curvature[node],
-                w,
-            ),
-        ];
+        g.moving[MonitoredQuantity::Strain as usize] = [strain, strain_rate(system, now, node, w)];
         g.moving[MonitoredQuantity::Outermost as usize] = nonlinear::outermost(system, w);
         let between = beam_contacts::deepest(system, w);
         g.moving[MonitoredQuantity::Depth as usize] = match contact_points::deepest(system, w) {
@@ -289,11 +280,11 @@ fn tip_angle_rate(system: &System, now: &TimeData, w: &Workspace<f64>) -> f64 {
 }
 
 /// Rate of the largest fibre strain at its node [1/s].
-fn strain_rate(now: &TimeData, node: usize, last: usize, fiber: f64, w: &Workspace<f64>) -> f64 {
-    let (a, b) = (node.saturating_sub(1), node.min(last - 1));
+fn strain_rate(system: &System, now: &TimeData, node: usize, w: &Workspace<f64>) -> f64 {
+    let [a, b] = system.mesh.cells_beside(node);
     let stretch_rate = 0.5 * (w.shape.stretch_rate[a] + w.shape.stretch_rate[b]);
-    (node_stretch(w, node, last) - 1.0).signum() * stretch_rate
+    (node_stretch(&system.mesh, w, node) - 1.0).signum() * stretch_rate
         + (w.shape.kappa[node] - now.rest_curvature(node)).signum()
             * (w.shape.kappa_rate[node] - now.rest_curvature_rate(node))
-            * fiber
+            * system.sections.fiber_of_curvature[node]
 }

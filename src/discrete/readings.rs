@@ -132,7 +132,12 @@ fn bending(system: &System, now: &TimeData, w: &Workspace<f64>, readings: &mut F
             + pressure_curvature(system, w, i)
             + now.rest_curvature(i);
         let published = system.model.published();
-        readings.curvature[i] = alpha / if published { node_stretch(w, i, last) } else { 1.0 };
+        readings.curvature[i] = alpha
+            / if published {
+                node_stretch(&system.mesh, w, i)
+            } else {
+                1.0
+            };
     }
     if !w.shape.sections.angle.is_empty() {
         let (stiffness, viscosity) = (&system.sections.shear, &system.sections.shear_viscosity);

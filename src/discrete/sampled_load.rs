@@ -22,7 +22,9 @@ pub struct SampledLoad {
     pub kind: LoadKind,
     /// Time function.
     pub signal: Signal,
-    /// Factor at each node or cell, in the unit of the load.
+    /// First node or cell on which it acts.
+    pub first: usize,
+    /// Factor at each node or cell from the first on, in the unit of the load.
     pub shape: Vec<f64>,
 }
 
@@ -51,6 +53,7 @@ impl SampledLoad {
         Self {
             kind: load.kind,
             signal: load.signal.clone(),
+            first: 0,
             shape,
         }
     }

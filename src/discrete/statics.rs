@@ -94,7 +94,7 @@ impl Statics {
         }
         for load in system.loads.iter().filter(|load| load.kind == LoadKind::ForceZ) {
             let factor = load.signal.jet(clock);
-            for (i, (node, shape)) in self.nodes.iter_mut().zip(&load.shape).enumerate() {
+            for ((i, node), shape) in self.nodes.iter_mut().enumerate().skip(load.first).zip(&load.shape) {
                 let size = mesh.node_lengths[i] * shape;
                 node.0 += size * factor.value;
                 node.1 += size * factor.rate;

@@ -7,7 +7,6 @@ use super::{
 };
 use crate::case::schema::Case;
 use crate::case::spans;
-use crate::model::loads::LoadKind;
 use crate::model::structure::BeamOfStructure;
 use crate::model::{Model, Structure};
 use crate::numerics::{Planar, Scalar};
@@ -103,12 +102,11 @@ impl BeamParts {
             parts
         };
         let each: Vec<Self> = structure.beams.iter().map(one).collect();
-        let all = each.iter().map(|one| one.mesh.nodes).sum();
         let mut before = [0, 0];
         let moved = each.into_iter().zip(&structure.beams).map(|(next, beam)| {
-            let firsts = beam.of_structure.each_ref().map(|range| range.start);
+            let [_, attachments, contacts] = &beam.of_structure;
             let own = [next.mesh.nodes, next.mesh.segments];
-            let next = next.moved(before, firsts, all);
+            let next = next.moved(before, [attachments.start, contacts.start]);
             before = [before[0] + own[0], before[1] + own[1]];
             next
         });
@@ -117,15 +115,9 @@ impl BeamParts {
         Some(joined)
     }
 
-    /// The same on a mesh in which its first node has another number, with the numbers of the first load, attachment and contact, and with
-    /// loads on all nodes.
-    fn moved(mut self, [nodes, segments]: [usize; 2], [_, attachment, contact]: [usize; 3], all: usize) -> Self {
-        for load in &mut self.loads {
-            let cells = matches!(load.kind, LoadKind::MomentX | LoadKind::MomentZ);
-            let mut shape = vec![0.0; if cells { all - 1 } else { all }];
-            shape[nodes..nodes + load.shape.len()].copy_from_slice(&load.shape);
-            load.shape = shape;
-        }
+    /// The same on a mesh in which its first node has another number, with the numbers of the first attachment and the first contact.
+    fn moved(mut self, [nodes, segments]: [usize; 2], [attachment, contact]: [usize; 2]) -> Self {
+        self.loads.iter_mut().for_each(|load| load.first += nodes);
         self.attached.iter_mut().for_each(|one| one.shift(nodes, attachment));
         self.bodies.iter_mut().for_each(|one| one.shift(nodes, attachment));
         self.touching.iter_mut().for_each(|one| one.shift(nodes, contact));
@@ -136,7 +128,7 @@ impl BeamParts {
     /// The same, followed by those of another beam.
     fn followed_by(mut self, next: Self) -> Self {
         self.sections.append(next.sections, self.mesh.nodes);
-        self.mesh = BeamMesh::joined(self.mesh, [next.mesh]);
+        self.mesh = self.mesh.followed_by(next.mesh);
         self.loads.extend(next.loads);
         self.attached.extend(next.attached);
         self.bodies.extend(next.bodies);
@@ -149,19 +141,25 @@ impl BeamParts {
     }
 }
 
+/// Position of a node of the straight beam or structure in the axes of the case [m].
+pub fn rest_position(model: &Model, mesh: &BeamMesh, node: usize) -> Planar<f64> {
+    let along = Planar {
+        x: 0.0,
+        z: mesh.node_coordinate(node),
+    };
+    match &model.structure {
+        None => along,
+        Some(structure) => {
+            let piece = &structure.beams[mesh.beam_of_node(node)].piece;
+            piece.origin + piece.turned(along)
+        }
+    }
+}
+
 impl System {
     /// Position of a node of the straight beam or structure in the axes of the case [m].
     pub fn rest_position(&self, node: usize) -> Planar<f64> {
-        let own = Planar {
-            x: 0.0,
-            z: self.mesh.node_coordinate(node),
-        };
-        match &self.model.structure {
-            None => own,
-            Some(structure) => {
-                structure.beams[self.mesh.beam_of_node(node)].piece.origin + self.in_axes_of_case(node, own)
-            }
-        }
+        rest_position(&self.model, &self.mesh, node)
     }
 
     /// Part of the mesh whose tip is that of the beam, in a structure that of its first beam.

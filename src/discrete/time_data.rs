@@ -308,13 +308,13 @@ impl TimeData {
                 LoadKind::MomentZ => (&mut self.moment, 1),
                 LoadKind::RestCurvature => {
                     for (values, factor) in self.rest_curvature.iter_mut().zip([jet.value, jet.rate]) {
-                        let shaped = values.iter_mut().zip(&load.shape);
+                        let shaped = values[load.first..].iter_mut().zip(&load.shape);
                         shaped.for_each(|(value, shape)| *value += factor * shape);
                     }
                     continue;
                 }
             };
-            for (value, shape) in array.iter_mut().zip(&load.shape) {
+            for (value, shape) in array[load.first..].iter_mut().zip(&load.shape) {
                 value[axis] += factor * shape;
             }
         }

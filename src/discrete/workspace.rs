@@ -1,6 +1,7 @@
 //! Intermediate quantities of one evaluation, stage by stage; allocated once, for each scalar type.
 
 use super::System;
+use super::cell_boxes::CellBoxes;
 use super::joints::JointMotion;
 use super::readings::FourthOrderReadings;
 use super::residual::fourth_order;
@@ -129,8 +130,8 @@ pub struct Forces<T> {
     pub relaxing_shear: Vec<T>,
     /// Forces of beams on each other at nodes, elastic ones and those with losses [N]; empty without.
     pub between: Vec<[Planar<T>; 2]>,
-    /// Positions of nodes for these [m].
-    pub places: Vec<Planar<f64>>,
+    /// Places of nodes and boxes around cells, for contacts of beams.
+    pub boxes: CellBoxes,
     /// Moment that rotates the section of each cell [N m]; empty without shear.
     pub turning: Vec<T>,
     /// Addition of the normal force to the moment in bent cells, [E79] [N m]; empty without it.
@@ -343,7 +344,7 @@ impl<T: Scalar> Workspace<T> {
                 relaxing_normal: zeros(relaxation.stretch.len().min(c)),
                 relaxing_shear: zeros(relaxation.shear.len().min(c)),
                 between: vec![[Planar::zero(); 2]; touching],
-                places: vec![Planar::default(); touching],
+                boxes: CellBoxes::new(system),
                 turning: zeros(sheared),
                 arc_moment: zeros(if bent { n } else { 0 }),
                 side_moment: vec![[T::zero(); 2]; system.sections.offset_borders.len()],

@@ -51,6 +51,18 @@ pub struct PointForce {
     pub signal: Signal,
 }
 
+impl PointForce {
+    /// Body force on a point mass at a place `θ/l_s`.
+    pub(super) fn weight(load: DistributedLoad, at: f64) -> Self {
+        Self {
+            axis: usize::from(load.kind == LoadKind::ForceZ),
+            acting: ForceDirection::Weight,
+            factor: load.factor * load.profile.value(at),
+            signal: load.signal,
+        }
+    }
+}
+
 impl AttachedBody {
     /// True if the attachment has rotary inertia or an eccentric mass.
     pub fn is_body(&self) -> bool {
@@ -90,12 +102,7 @@ impl AttachedBody {
             .iter()
             .filter(|load| written.mass_kg > 0.0 && load.is_body())
             .flat_map(|load| DistributedLoad::on(load, [written.mass_kg; 2]))
-            .map(|load| PointForce {
-                axis: usize::from(load.kind == LoadKind::ForceZ),
-                acting: ForceDirection::Weight,
-                factor: load.factor * load.profile.value(written.at),
-                signal: load.signal,
-            });
+            .map(|load| PointForce::weight(load, written.at));
         Self {
             at: written.at,
             mass: written.mass_kg,

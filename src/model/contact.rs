@@ -2,7 +2,7 @@
 
 use crate::case::schema::{BeamContact, Case, Contact as Written};
 use crate::case::spans::SegmentValues;
-use crate::numerics::{Planar, Scalar, ramp};
+use crate::numerics::{Planar, Scalar, ramp, ramp_integral};
 
 /// Distance from the center below which the normal of a circle fades, in radii: no force depends on it, since `1 + 1e-16 = 1`.
 const CORE: f64 = 1e-8;
@@ -54,16 +54,8 @@ pub struct ContactLaw {
     pub reach: f64,
     /// True if r is half the height of the section at each place.
     pub follows_section: bool,
-    /// `k` [Pa]; at one place [N/m].
-    pub stiffness: f64,
-    /// `d` [m].
-    pub smoothing: f64,
-    /// `c` [s/m].
-    pub damping: f64,
-    /// `μ`.
-    pub friction: f64,
-    /// `v_0` [m/s].
-    pub slow: f64,
+    /// Forces.
+    pub pressing: PressingLaw,
 }
 
 /// Contact of beams with each other.
@@ -151,11 +143,13 @@ impl ContactLaw {
             face,
             reach: written.reach_m.unwrap_or(reach),
             follows_section: written.reach_m.is_none(),
-            stiffness: written.stiffness_pa.or(written.stiffness_n_m).unwrap_or(0.0),
-            smoothing: written.smoothing_m,
-            damping: written.damping_s_m,
-            friction: written.friction_coefficient,
-            slow: written.friction_velocity_m_s.unwrap_or(1.0),
+            pressing: PressingLaw {
+                stiffness: written.stiffness_pa.or(written.stiffness_n_m).unwrap_or(0.0),
+                smoothing: written.smoothing_m,
+                damping: written.damping_s_m,
+                friction: written.friction_coefficient,
+                slow: written.friction_velocity_m_s.unwrap_or(1.0),
+            },
         }
     }
 
@@ -177,7 +171,7 @@ impl ContactLaw {
 
     /// True if the contact dissipates energy.
     pub fn is_lossy(&self) -> bool {
-        self.damping > 0.0 || self.friction > 0.0
+        self.pressing.damping > 0.0 || self.pressing.friction > 0.0
     }
 
     /// Depth of the beam's surface, `reach` [m] from its line, behind the face for a point of the line [m], negative in front of the face,
@@ -203,22 +197,12 @@ impl ContactLaw {
     #[inline]
     pub fn forces<T: Scalar>(&self, at: Planar<T>, velocity: Planar<T>, reach: f64) -> ContactForces<T> {
         let (depth, normal) = self.depth(at, reach);
-        self.pressing().forces(depth, normal, velocity)
+        self.pressing.forces(depth, normal, velocity)
     }
 
     /// `k S(g)`.
     pub fn energy(&self, depth: f64) -> f64 {
-        self.pressing().energy(depth)
-    }
-
-    fn pressing(&self) -> PressingLaw {
-        PressingLaw {
-            stiffness: self.stiffness,
-            smoothing: self.smoothing,
-            damping: self.damping,
-            friction: self.friction,
-            slow: self.slow,
-        }
+        self.pressing.energy(depth)
     }
 }
 
@@ -249,13 +233,7 @@ impl PressingLaw {
 
     /// `k S(g)`.
     pub fn energy(&self, depth: f64) -> f64 {
-        let d = self.smoothing;
-        let stored = match depth {
-            g if g <= 0.0 => 0.0,
-            g if g < d => g * g * g / (6.0 * d),
-            g => 0.5 * g * (g - d) + d * d / 6.0,
-        };
-        self.stiffness * stored
+        self.stiffness * ramp_integral(depth, self.smoothing)
     }
 }
 
@@ -283,11 +261,13 @@ mod tests {
         },
         reach: 0.0,
         follows_section: false,
-        stiffness: 1e5,
-        smoothing: 1e-3,
-        damping: 2.0,
-        friction: 0.3,
-        slow: 1e-3,
+        pressing: PressingLaw {
+            stiffness: 1e5,
+            smoothing: 1e-3,
+            damping: 2.0,
+            friction: 0.3,
+            slow: 1e-3,
+        },
     };
 
     /// Circles around a center along the normal have the wall as tangent at the same point.

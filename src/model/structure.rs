@@ -2,13 +2,14 @@
 
 use std::ops::Range;
 
-use super::attachments::{ForceDirection, PointForce};
+use super::attachments::PointForce;
 use super::loads::{LoadKind, LoadMeasure};
 use super::{DistributedLoad, EffectSet, Model, Scales, Section, Wet, mean_section};
+use crate::case::Translation;
 use crate::case::schema::{Attachment, Case, Contact, ElasticJoint, Hinge, JointKind, Load};
 use crate::case::structure::{self, Piece};
 use crate::functions::Signal;
-use crate::numerics::{Planar, Scalar, ramp};
+use crate::numerics::{Planar, Scalar, ramp, ramp_integral};
 
 /// Beams of a structure, each with its own model, and their joints.
 #[derive(Clone, Debug)]
@@ -135,22 +136,83 @@ impl Structure {
         })
     }
 
-    /// Largest scales of its beams, and of the motion to the rest angles of hinges.
+    /// Largest scales of its beams, and of the motion to the rest angles of hinges. A beam counts as one with those that continue it,
+    /// [`Self::reaches`].
     pub fn scales(&self, case: &Case, section: &Section, wet: Option<&Wet>) -> Scales {
-        let each = self
-            .beams
-            .iter()
-            .map(|beam| Scales::estimate(&beam.case, &beam.model.section, wet));
+        let reaches = self.reaches();
+        let each = self.beams.iter().zip(&reaches).map(|(beam, reach)| {
+            let mut case = beam.case.clone();
+            case.beam.length_m = *reach;
+            Scales::estimate(&case, &beam.model.section, wet)
+        });
         let mut all = each
             .reduce(|all, one| all.larger(&one))
             .unwrap_or_else(|| Scales::estimate(case, section, wet));
         let sprung = self.joints.iter().filter_map(|joint| joint.hinge);
         let sprung = sprung.filter(|hinge| hinge.stiffness_n_m_rad > 0.0);
         let rest = sprung.map(|hinge| hinge.rest_rad.abs()).fold(0.0, f64::max);
-        let longest = self.beams.iter().map(|beam| beam.piece.length).fold(0.0, f64::max);
+        let longest = reaches.iter().copied().fold(0.0, f64::max);
         all.transverse = all.transverse.max(rest * longest);
         all.transverse_rate = all.transverse_rate.max(rest * longest * all.frequency);
         all
+    }
+
+    /// Length of each beam with those that continue it in joints of two ends: the way from a support to the farthest end, the least of all
+    /// supports; without support the longest way between two ends [m].
+    fn reaches(&self) -> Vec<f64> {
+        let supported = |end: &usize| {
+            let ends = &self.beams[end / 2].case.ends;
+            let motion = [&ends.root, &ends.tip][end % 2].resolve();
+            [motion.transverse, motion.axial]
+                .iter()
+                .any(|along| matches!(along, Translation::Displacement(_)))
+        };
+        let mut reaches = vec![0.0; self.beams.len()];
+        for first in 0..self.beams.len() {
+            if reaches[first] > 0.0 {
+                continue;
+            }
+            let ways = self.ways(2 * first);
+            let ends: Vec<usize> = (0..ways.len()).filter(|end| ways[*end].is_finite()).collect();
+            let farthest = |from: usize| {
+                let ways = self.ways(from);
+                ends.iter().map(|end| ways[*end]).fold(0.0, f64::max)
+            };
+            let held = ends.iter().copied().filter(supported).map(farthest).reduce(f64::min);
+            let reach = held.unwrap_or_else(|| ends.iter().copied().map(farthest).fold(0.0, f64::max));
+            for end in ends {
+                reaches[end / 2] = reach;
+            }
+        }
+        reaches
+    }
+
+    /// Shortest way along beams and through joints of two ends, from an end to every other [m]; infinite without a way.
+    fn ways(&self, from: usize) -> Vec<f64> {
+        let mut ways = vec![f64::INFINITY; 2 * self.beams.len()];
+        ways[from] = 0.0;
+        let mut shorter = true;
+        while shorter {
+            shorter = false;
+            let mut pass = |one: usize, other: usize, length: f64| {
+                for (from, to) in [(one, other), (other, one)] {
+                    if ways[from] + length < ways[to] {
+                        ways[to] = ways[from] + length;
+                        shorter = true;
+                    }
+                }
+            };
+            for (k, beam) in self.beams.iter().enumerate() {
+                pass(2 * k, 2 * k + 1, beam.piece.length);
+            }
+            for joint in &self.joints {
+                let mut ends = joint.ends();
+                if let (Some(one), Some(other), None) = (ends.next(), ends.next(), ends.next()) {
+                    pass(one, other, (self.place_of(other) - self.place_of(one)).squared().sqrt());
+                }
+            }
+        }
+        ways
     }
 
     /// Place of an end in the straight structure [m].
@@ -174,17 +236,8 @@ fn add_loads(case: &Case, piece: &Piece, model: &mut Model) {
         {
             let loads = DistributedLoad::on(written, [body.mass; 2]);
             let at = body.at;
-            body.forces.extend(
-                loads
-                    .into_iter()
-                    .flat_map(|load| turned(load, piece))
-                    .map(|load| PointForce {
-                        axis: usize::from(load.kind == LoadKind::ForceZ),
-                        acting: ForceDirection::Weight,
-                        factor: load.factor * load.profile.value(at),
-                        signal: load.signal,
-                    }),
-            );
+            let own = loads.into_iter().flat_map(|load| turned(load, piece));
+            body.forces.extend(own.map(|load| PointForce::weight(load, at)));
         }
     }
 }
@@ -309,14 +362,7 @@ pub fn elastic_forces<T: Scalar>(law: &ElasticJoint, by: [T; 3], rates: [T; 3]) 
 pub fn hinge_energy(hinge: &Hinge, angle: f64) -> f64 {
     let apart = angle - hinge.rest_rad;
     let stopped = hinge.stop.as_ref().map_or(0.0, |stop| {
-        let stored = |x: f64| {
-            let d = stop.smoothing_rad;
-            match x {
-                _ if x <= 0.0 => 0.0,
-                _ if x < d => x * x * x / (6.0 * d),
-                _ => 0.5 * x * x - 0.5 * d * x + d * d / 6.0,
-            }
-        };
+        let stored = |beyond: f64| ramp_integral(beyond, stop.smoothing_rad);
         stop.stiffness_n_m_rad * (stored(angle - stop.to_rad) + stored(stop.from_rad - angle))
     });
     0.5 * hinge.stiffness_n_m_rad * apart * apart + stopped

@@ -47,6 +47,6 @@ pub mod threads;
 
 pub use dual::Dual;
 pub use planar::Planar;
-pub use ramp::ramp;
+pub use ramp::{ramp, ramp_integral};
 pub use scalar::Scalar;
 pub(crate) use simd::wide;

@@ -45,6 +45,30 @@ impl<T: Scalar> Planar<T> {
         Self::new(-self.z, self.x)
     }
 
+    /// Vector with these components along axes that are turned to `direction`, `(sin φ, cos φ)`.
+    #[inline(always)]
+    pub fn turned<D: Copy>(self, direction: Planar<D>) -> Self
+    where
+        T: Mul<D, Output = T>,
+    {
+        Self::new(
+            self.x * direction.z + self.z * direction.x,
+            self.z * direction.z - self.x * direction.x,
+        )
+    }
+
+    /// Components along axes that are turned to `direction`, the inverse of [`Planar::turned`].
+    #[inline(always)]
+    pub fn turned_back<D: Copy>(self, direction: Planar<D>) -> Self
+    where
+        T: Mul<D, Output = T>,
+    {
+        Self::new(
+            self.x * direction.z - self.z * direction.x,
+            self.z * direction.z + self.x * direction.x,
+        )
+    }
+
     /// This vector times `factor`.
     #[inline(always)]
     pub fn times(self, factor: T) -> Self {

@@ -347,14 +347,14 @@ impl Range {
         }
         if self.begun > 0.0 {
             all.push(Code::BeyondRange.warning(format!(
-                "contact: the beam begins {} behind the face of an obstacle, which pushes it out. Begin in front of the \
-                 face, or with /start/equilibrium.",
+                "contact: the beam begins {} behind the surface of an obstacle or a beam, which pushes it out. Begin in front \
+                 of it, or with /start/equilibrium.",
                 quantity(self.begun, "m", 4)
             )));
         }
         if let Some(began) = self.touched.began {
             all.push(Code::BeyondRange.warning(format!(
-                "contact: the beam is pressed {} into an obstacle at t = {:.4} s (limit half its height or half the \
+                "contact: the beam is pressed {} into an obstacle or a beam at t = {:.4} s (limit half its height or half the \
                  bend radius at a circle, {}; exceeded from t = {began:.4} s on). Use a stiffer contact.",
                 quantity(self.touched.largest, "m", 4),
                 self.touched.t,

@@ -49,6 +49,14 @@ fn number(name: &str) -> Option<u64> {
     std::env::var(name).ok().and_then(|text| text.parse().ok())
 }
 
+/// Verdicts on so many scenes of a kind, or on `SLCBEAM_ADVERSARY`, from `SLCBEAM_ADVERSARY_FIRST` on; goes on where it ended.
+fn chosen(kind: Kind, usual: u64) -> Vec<serde_json::Value> {
+    let (count, first) = (number("SLCBEAM_ADVERSARY"), number("SLCBEAM_ADVERSARY_FIRST"));
+    let lines = tally::run(kind, first.unwrap_or(1), count.unwrap_or(usual), true);
+    println!("{}", tally::table(&lines));
+    lines
+}
+
 /// Seeds among them that are silently wrong and known to be, and why: `docs/stability.md`, "What stays open".
 const KNOWN: &[(u64, &str)] = &[];
 
@@ -84,52 +92,36 @@ fn no_scene_is_silently_wrong() {
 #[test]
 #[ignore = "takes hours"]
 fn no_scene_of_five_thousand_is_silently_wrong() {
-    let (count, first) = (number("SLCBEAM_ADVERSARY"), number("SLCBEAM_ADVERSARY_FIRST"));
-    let lines = tally::run(Kind::Extreme, first.unwrap_or(1), count.unwrap_or(5000), true);
-    println!("{}", tally::table(&lines));
-    none_silent(&lines);
+    none_silent(&chosen(Kind::Extreme, 5000));
 }
 
 /// Goal: of 300 scenes with what is attached, around, relaxes, is curved at rest, shears or is compressed none is silently wrong.
 #[test]
 #[ignore = "takes minutes"]
 fn no_scene_with_further_effects_is_silently_wrong() {
-    let (count, first) = (number("SLCBEAM_ADVERSARY"), number("SLCBEAM_ADVERSARY_FIRST"));
-    let lines = tally::run(Kind::Further, first.unwrap_or(1), count.unwrap_or(300), true);
-    println!("{}", tally::table(&lines));
-    none_silent(&lines);
+    none_silent(&chosen(Kind::Further, 300));
 }
 
 /// Goal: of 300 scenes with walls, check valves, pumps, vessels and syringes none is silently wrong.
 #[test]
 #[ignore = "takes minutes"]
 fn no_scene_with_parts_is_silently_wrong() {
-    let (count, first) = (number("SLCBEAM_ADVERSARY"), number("SLCBEAM_ADVERSARY_FIRST"));
-    let lines = tally::run(Kind::Parts, first.unwrap_or(1), count.unwrap_or(300), true);
-    println!("{}", tally::table(&lines));
-    none_silent(&lines);
+    none_silent(&chosen(Kind::Parts, 300));
 }
 
 /// Goal: of 300 graphs of beams none is silently wrong.
 #[test]
 #[ignore = "takes minutes"]
 fn no_graph_of_beams_is_silently_wrong() {
-    let (count, first) = (number("SLCBEAM_ADVERSARY"), number("SLCBEAM_ADVERSARY_FIRST"));
-    let lines = tally::run(Kind::Graph, first.unwrap_or(1), count.unwrap_or(300), true);
-    println!("{}", tally::table(&lines));
-    none_silent(&lines);
+    none_silent(&chosen(Kind::Graph, 300));
 }
 
 /// Goal: of 200 sane scenes at most 5 % carry a warning that the reference shows to be needless, and none is silently wrong.
 #[test]
 #[ignore = "takes a quarter of an hour"]
 fn sane_scenes_are_rarely_warned_needlessly() {
-    let (count, first) = (
-        number("SLCBEAM_ADVERSARY").unwrap_or(200),
-        number("SLCBEAM_ADVERSARY_FIRST"),
-    );
-    let lines = tally::run(Kind::Sane, first.unwrap_or(1), count, true);
-    println!("{}", tally::table(&lines));
+    let lines = chosen(Kind::Sane, 200);
+    let count = lines.len() as u64;
     let needless = lines.iter().filter(|line| !line["needless"].is_null()).count() as u64;
     assert!(20 * needless <= count, "{needless} of {count} warned needlessly");
     none_silent(&lines);

@@ -15,8 +15,8 @@ const BEAMS: [&str; 3] = ["left", "up", "arm"];
 
 /// Runs the structure; its recording.
 fn recorded(dir: &Path) -> Recording {
-    let (code, _, told) = slcbeam(&["run", ELL, "--quiet", "--out", dir.to_str().unwrap()]);
-    assert_eq!(code, Some(0), "{told}");
+    let (code, _, stderr) = slcbeam(&["run", ELL, "--quiet", "--out", dir.to_str().unwrap()]);
+    assert_eq!(code, Some(0), "{stderr}");
     reading::read(dir).unwrap()
 }
 
@@ -115,9 +115,9 @@ fn exports_name_beams_and_place_them() {
 #[test]
 fn shapes_of_equilibria_are_in_the_axes_of_the_case() {
     let dir = TempDir::new().unwrap();
-    let (code, said, told) = slcbeam(&["equilibrium", ELL, "--out", dir.path().to_str().unwrap()]);
-    assert_eq!(code, Some(0), "{told}");
-    assert!(said.contains("up.tip_u1"), "{said}");
+    let (code, stdout, stderr) = slcbeam(&["equilibrium", ELL, "--out", dir.path().to_str().unwrap()]);
+    assert_eq!(code, Some(0), "{stderr}");
+    assert!(stdout.contains("up.tip_u1"), "{stdout}");
     let read = |file: &str| {
         let mut reader = csv::Reader::from_path(dir.path().join(file)).unwrap();
         let heads: Vec<String> = reader.headers().unwrap().iter().map(str::to_owned).collect();
@@ -147,8 +147,8 @@ fn shapes_of_equilibria_are_in_the_axes_of_the_case() {
 #[test]
 fn analyses_of_one_beam_refuse_structures() {
     for command in ["mapping", "bands", "sense"] {
-        let (code, _, told) = slcbeam(&[command, ELL]);
-        let refused = code == Some(2) && told.contains("a single one is needed");
-        assert!(refused, "{command}: {code:?} {told}");
+        let (code, _, stderr) = slcbeam(&[command, ELL]);
+        let refused = code == Some(2) && stderr.contains("a single one is needed");
+        assert!(refused, "{command}: {code:?} {stderr}");
     }
 }

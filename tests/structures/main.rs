@@ -1,4 +1,4 @@
-//! Structures of several beams, [E104] to [E107]: cut and joined shipped cases, frames, mechanisms, networks over beams, derivatives,
+//! Structures of several beams, [E104] to [E108]: cut and joined shipped cases, frames, mechanisms, networks over beams, derivatives,
 //! growth of the work with the number of beams.
 //!
 //! Sources: single beams, shooting in exact elastica equations, dynamic stiffness, spectral elements with Radau's method, circuit theory.
@@ -14,6 +14,7 @@ mod differences;
 mod frames;
 mod growth;
 mod identity;
+mod ledgers;
 mod mechanisms;
 mod modes;
 mod networks;

@@ -97,34 +97,53 @@ pub(super) fn check(case: &Case, faults: &mut Violations) {
                 "reach_m is in meters; absent: half the height",
             );
         }
-        if contact.friction_velocity_m_s.is_some_and(|v| v < SLOWEST) {
-            fault(
-                "friction_velocity_m_s",
-                "a friction velocity below 1e-9 m/s",
-                "give about a hundredth of the sliding velocity",
-            );
-        }
-        if contact.friction_coefficient > 0.0 && contact.friction_velocity_m_s.is_none() {
-            fault(
-                "friction_coefficient",
-                "friction without friction_velocity_m_s",
-                "give friction_velocity_m_s, about a hundredth of the sliding velocity",
-            );
-        }
-        if contact.friction_coefficient == 0.0 && contact.friction_velocity_m_s.is_some() {
-            fault(
-                "friction_velocity_m_s",
-                "a friction velocity without friction",
-                "give friction_coefficient, or leave it out",
-            );
-        }
-        if let Some(first) = known.insert(&contact.name, i) {
-            let what = format!("a second contact \"{}\", the first is /contacts/{first}", contact.name);
-            fault(
-                "name",
-                &what,
-                "columns of outputs have these names: give each contact its own",
-            );
-        }
+        friction(
+            &pointer,
+            contact.friction_coefficient,
+            contact.friction_velocity_m_s,
+            faults,
+        );
+        named_once(&mut known, (&contact.name, &pointer), faults);
+    }
+}
+
+/// Checks the coefficient of friction of a contact with the velocity below which friction falls.
+pub(super) fn friction(pointer: &str, coefficient: f64, velocity: Option<f64>, faults: &mut Violations) {
+    let mut fault = |key: &str, what: &str, hint: &str| {
+        faults.push(Violation::new(Code::Together, format!("{pointer}/{key}"), what).hint(hint));
+    };
+    if velocity.is_some_and(|v| v < SLOWEST) {
+        fault(
+            "friction_velocity_m_s",
+            "a friction velocity below 1e-9 m/s",
+            "give about a hundredth of the sliding velocity",
+        );
+    }
+    if coefficient > 0.0 && velocity.is_none() {
+        fault(
+            "friction_coefficient",
+            "friction without friction_velocity_m_s",
+            "give friction_velocity_m_s, about a hundredth of the sliding velocity",
+        );
+    }
+    if coefficient == 0.0 && velocity.is_some() {
+        fault(
+            "friction_velocity_m_s",
+            "a friction velocity without friction",
+            "give friction_coefficient, or leave it out",
+        );
+    }
+}
+
+/// Checks that the name of a contact with this pointer is not that of one before, which are `known` with their pointers.
+pub(super) fn named_once<'a>(
+    known: &mut HashMap<&'a str, String>,
+    (name, pointer): (&'a str, &str),
+    faults: &mut Violations,
+) {
+    if let Some(first) = known.insert(name, pointer.to_owned()) {
+        let what = format!("a second contact \"{name}\", the first is {first}");
+        let fault = Violation::new(Code::Together, format!("{pointer}/name"), what);
+        faults.push(fault.hint("columns of outputs have these names: give each contact its own"));
     }
 }

@@ -4,7 +4,7 @@ use super::time::END;
 use crate::case::faults::Violations;
 use crate::case::locate::child;
 use crate::case::numbers::plain;
-use crate::case::schema::{Case, ChainEnd, End, Formulation};
+use crate::case::schema::{Attachment, Case, ChainEnd, Distributed, End, Formulation, Load};
 use crate::error::numbers::counted;
 use crate::error::{Code, Violation};
 use crate::functions::MOST_KNOTS;
@@ -96,57 +96,75 @@ pub(super) fn check(case: &Case, faults: &mut Violations) {
     }
 }
 
-/// All signals of a case, each with its pointer and its role.
-fn signals(case: &Case) -> Vec<(String, Role, &Signal)> {
-    let mut all = vec![];
-    for (k, beam) in case.beams.iter().enumerate() {
-        for (end, name) in beam.ends.both().into_iter().zip(["root", "tip"]) {
+/// Ends, loads and attachments of a beam: those of a single beam, or of one of a structure.
+struct ActingOnBeam<'a> {
+    /// Pointer of the case or of the beam.
+    at: String,
+    ends: [Option<&'a End>; 2],
+    loads: &'a [Load],
+    attachments: &'a [Attachment],
+}
+
+impl<'a> ActingOnBeam<'a> {
+    fn all(case: &'a Case) -> impl Iterator<Item = Self> {
+        let whole = Self {
+            at: String::new(),
+            ends: [Some(&case.ends.root), Some(&case.ends.tip)],
+            loads: &case.loads,
+            attachments: &case.attachments,
+        };
+        let beams = case.beams.iter().enumerate().map(|(k, beam)| Self {
+            at: format!("/beams/{k}"),
+            ends: beam.ends.both(),
+            loads: &beam.loads,
+            attachments: &beam.attachments,
+        });
+        std::iter::once(whole).chain(beams)
+    }
+
+    /// Distributed loads with the pointers of their keys.
+    fn distributed(&self) -> impl Iterator<Item = (String, &'static str, &'a Distributed)> {
+        let loads = self.loads.iter().enumerate();
+        loads.filter_map(|(i, load)| {
+            let (key, load) = load.distributed()?;
+            Some((format!("{}/loads/{i}/{key}", self.at), key, load))
+        })
+    }
+
+    fn signals(&self, damped: bool) -> Vec<(String, Role, &'a Signal)> {
+        let mut all = vec![];
+        for (end, name) in self.ends.into_iter().zip(["root", "tip"]) {
             let Some((form, given)) = end.map(End::form) else {
                 continue;
             };
-            let role = |key: &str| match ["u1_m", "u3_m", "slope_rad"].contains(&key) {
-                true => Role::Motion,
-                false => Role::Other,
-            };
-            let given = given.given();
-            all.extend(given.map(|(key, signal)| (format!("/beams/{k}/ends/{name}/{form}/{key}"), role(key), signal)));
+            for (key, signal) in given.given() {
+                let role = if ["u1_m", "u3_m", "slope_rad"].contains(&key) {
+                    Role::Motion
+                } else {
+                    Role::Other
+                };
+                all.push((format!("{}/ends/{name}/{form}/{key}", self.at), role, signal));
+            }
         }
-        for (i, load) in beam.loads.iter().enumerate() {
-            let load = load.distributed();
-            all.extend(
-                load.map(|(key, load)| (format!("/beams/{k}/loads/{i}/{key}/signal"), Role::Other, &load.signal)),
-            );
-        }
-        for (i, attachment) in beam.attachments.iter().enumerate() {
-            let forces = attachment.forces();
-            let at = |key| format!("/beams/{k}/attachments/{i}/{key}");
-            all.extend(forces.map(|(key, signal)| (at(key), Role::Other, signal)));
-        }
-    }
-    for (end, name) in [(&case.ends.root, "root"), (&case.ends.tip, "tip")] {
-        let (form, given) = end.form();
-        for (key, signal) in given.given() {
-            let role = if ["u1_m", "u3_m", "slope_rad"].contains(&key) {
-                Role::Motion
-            } else {
-                Role::Other
-            };
-            all.push((format!("/ends/{name}/{form}/{key}"), role, signal));
-        }
-    }
-    let damped = case.damping_times().iter().any(|[bending, _]| *bending > 0.0);
-    for (i, load) in case.loads.iter().enumerate() {
-        if let Some((key, load)) = load.distributed() {
+        for (at, key, load) in self.distributed() {
             // with damping of bending rates, the rest curvature must not jump
             let moves = key == "rest_curvature_1_m" && damped;
             let role = if moves { Role::Motion } else { Role::Other };
-            all.push((format!("/loads/{i}/{key}/signal"), role, &load.signal));
+            all.push((format!("{at}/signal"), role, &load.signal));
         }
+        for (i, attachment) in self.attachments.iter().enumerate() {
+            let at = |key| format!("{}/attachments/{i}/{key}", self.at);
+            let forces = attachment.forces();
+            all.extend(forces.map(|(key, signal)| (at(key), Role::Other, signal)));
+        }
+        all
     }
-    for (i, attachment) in case.attachments.iter().enumerate() {
-        let forces = attachment.forces();
-        all.extend(forces.map(|(key, signal)| (format!("/attachments/{i}/{key}"), Role::Other, signal)));
-    }
+}
+
+/// All signals of a case, each with its pointer and its role.
+fn signals(case: &Case) -> Vec<(String, Role, &Signal)> {
+    let damped = case.damping_times().iter().any(|[bending, _]| *bending > 0.0);
+    let mut all: Vec<_> = ActingOnBeam::all(case).flat_map(|one| one.signals(damped)).collect();
     for (key, signal) in case.surroundings.iter().flat_map(|around| around.stream()) {
         all.push((format!("/surroundings/{key}"), Role::Stream, signal));
     }
@@ -192,10 +210,9 @@ fn signals(case: &Case) -> Vec<(String, Role, &Signal)> {
 /// All profiles of a case with their pointers.
 fn profiles(case: &Case) -> Vec<(String, &Profile)> {
     let mut all = vec![];
-    for (i, load) in case.loads.iter().enumerate() {
-        if let Some((key, load)) = load.distributed() {
-            all.push((format!("/loads/{i}/{key}/profile"), &load.profile));
-        }
+    for acting in ActingOnBeam::all(case) {
+        let loads = acting.distributed();
+        all.extend(loads.map(|(at, _, load)| (format!("{at}/profile"), &load.profile)));
     }
     let start = &case.start;
     let fields = [

@@ -2,7 +2,7 @@
 
 use std::collections::HashMap;
 
-use super::{attachments, ends, functions, probes};
+use super::{attachments, contacts, ends, probes};
 use crate::case::faults::{Violations, is_below};
 use crate::case::schema::{Case, End, Ends, Formulation, Joint, JointKind, PlacedBeam, Start, StartPressure};
 use crate::case::structure::{self, Along, Piece, joined_place};
@@ -39,7 +39,7 @@ pub(super) fn check(case: &Case, faults: &mut Violations) {
     for (k, piece) in structure::pieces(&uncut).0.iter().enumerate() {
         let mut own = Violations::default();
         let single = piece.case(case);
-        for rule in [ends::check, attachments::check, probes::check, functions::check] {
+        for rule in [ends::check, attachments::check, probes::check] {
             rule(&single, &mut own);
         }
         let of_beam = |pointer: &str| OF_A_BEAM.iter().any(|part| is_below(pointer, &format!("/{part}")));
@@ -53,36 +53,20 @@ fn beam_contacts(case: &Case, faults: &mut Violations) {
     let mut known = HashMap::new();
     for (k, contact) in case.beam_contacts.iter().enumerate() {
         let pointer = format!("/beam_contacts/{k}");
-        if let Some(first) = known.insert(&contact.name, k) {
-            let what = format!(
-                "two contacts have the name \"{}\", the first is /beam_contacts/{first}",
-                contact.name
-            );
-            faults.push(Violation::new(Code::Together, format!("{pointer}/name"), what).hint("rename one"));
-        }
-        if contact.friction_coefficient > 0.0 && contact.friction_velocity_m_s.is_none() {
-            let what = "friction without the velocity below which it falls";
-            let fault = Violation::new(Code::Missing, &pointer, what);
-            faults.push_at_key(fault.hint("give friction_velocity_m_s, far below the velocity of sliding"));
-        }
-        let names = || case.beams.iter().map(|beam| beam.name.as_str());
+        contacts::named_once(&mut known, (&contact.name, &pointer), faults);
+        contacts::friction(
+            &pointer,
+            contact.friction_coefficient,
+            contact.friction_velocity_m_s,
+            faults,
+        );
         for (i, name) in contact.between.iter().flatten().enumerate() {
             if !case.is_structure() {
                 let fault = Violation::new(Code::Name, format!("{pointer}/between"), "a case without \"beams\"");
                 faults.push_at_key(fault.hint("leave \"between\" out: the beam touches itself"));
                 break;
             }
-            if !names().any(|known| known == name) {
-                let fault = Violation::new(
-                    Code::Name,
-                    format!("{pointer}/between/{i}"),
-                    format!("there is no beam \"{name}\""),
-                );
-                faults.push(Violation {
-                    nearest: nearest(name, names()),
-                    ..fault.allowed(names().collect::<Vec<_>>().join(", "))
-                });
-            }
+            beam_named(case, name, &format!("{pointer}/between/{i}"), faults);
         }
     }
 }
@@ -216,23 +200,29 @@ fn joints(case: &Case, faults: &mut Violations) {
     }
 }
 
+/// Number of the beam of this name.
+fn beam_named(case: &Case, name: &str, pointer: &str, faults: &mut Violations) -> Option<usize> {
+    let names = || case.beams.iter().map(|beam| beam.name.as_str());
+    let found = names().position(|known| known == name);
+    if found.is_none() {
+        let fault = Violation::new(Code::Name, pointer, format!("there is no beam \"{name}\""));
+        faults.push(Violation {
+            nearest: nearest(name, names()),
+            ..fault.allowed(names().collect::<Vec<_>>().join(", "))
+        });
+    }
+    found
+}
+
 /// Beam and number of segments before a joined place.
 fn located(case: &Case, written: &str, pointer: &str, faults: &mut Violations) -> Option<(usize, usize)> {
-    let names = || case.beams.iter().map(|beam| beam.name.as_str());
     let allowed = "the name of a beam with .root, .tip, or .3 for the place behind its third segment";
     let Some((name, along)) = joined_place(written) else {
         let fault = Violation::new(Code::Name, pointer, format!("\"{written}\" is not a place of a beam"));
         faults.push(fault.allowed(allowed));
         return None;
     };
-    let Some(beam) = names().position(|known| known == name) else {
-        let fault = Violation::new(Code::Name, pointer, format!("there is no beam \"{name}\""));
-        faults.push(Violation {
-            nearest: nearest(name, names()),
-            ..fault.allowed(names().collect::<Vec<_>>().join(", "))
-        });
-        return None;
-    };
+    let beam = beam_named(case, name, pointer, faults)?;
     let segments = case.beams[beam].segments.unwrap_or(1);
     match along {
         Along::Root => Some((beam, 0)),

@@ -1,7 +1,7 @@
 //! Pieces of a structure: single beams with their own axes.
 
 use super::{Along, joined_place};
-use crate::case::schema::{Case, End, EndConditions, Ends, Mesh, PlacedBeam, Span, Start};
+use crate::case::schema::{Attachment, Case, End, EndConditions, Ends, Mesh, PlacedBeam, Probe, Span, Start};
 use crate::case::spans;
 use crate::numerics::{Planar, Scalar};
 
@@ -56,14 +56,12 @@ impl Piece {
 
     /// Components of a vector along the axes of the piece.
     pub fn own<T: Scalar>(&self, v: Planar<T>) -> Planar<T> {
-        let z = self.direction();
-        Planar::new(v.x * z.z - v.z * z.x, v.x * z.x + v.z * z.z)
+        v.turned_back(self.direction())
     }
 
     /// Vector with these components along the axes of the piece.
     pub fn turned<T: Scalar>(&self, v: Planar<T>) -> Planar<T> {
-        let z = self.direction();
-        Planar::new(v.x * z.z + v.z * z.x, v.z * z.z - v.x * z.x)
+        v.turned(self.direction())
     }
 
     /// The piece as a case of its own: the section of its segments, the conditions at its free ends, and the loads, attachments and probes of
@@ -77,6 +75,7 @@ impl Piece {
             let here = share(at);
             here >= -NEAR && (here < 1.0 - NEAR || (last && here <= 1.0 + NEAR))
         };
+        let own = |at: f64| share(at).clamp(0.0, 1.0);
         let end = |k: usize| -> End {
             let own = beam.ends.both()[k].filter(|_| self.at_end[k]);
             own.cloned().unwrap_or_else(|| End::Free(EndConditions::default()))
@@ -105,17 +104,15 @@ impl Piece {
             },
             loads: beam.loads.clone(),
             attachments: attachments
-                .map(|one| {
-                    let mut one = one.clone();
-                    one.at = share(one.at).clamp(0.0, 1.0);
-                    one
+                .map(|one| Attachment {
+                    at: own(one.at),
+                    ..one.clone()
                 })
                 .collect(),
             probes: probes
-                .map(|one| {
-                    let mut one = one.clone();
-                    one.at = share(one.at).clamp(0.0, 1.0);
-                    one
+                .map(|one| Probe {
+                    at: own(one.at),
+                    ..one.clone()
                 })
                 .collect(),
             network: None,

@@ -128,9 +128,9 @@ pub fn pressure_rates(system: &System, wet: &Wet, w: &Workspace<f64>, j: usize) 
 }
 
 /// Pressures, means and their rates in one segment.
-struct SegmentRates {
-    moment: f64,
-    force: f64,
+pub(super) struct SegmentRates {
+    pub(super) moment: f64,
+    pub(super) force: f64,
     moment_rate: f64,
     force_rate: f64,
     pressure: [f64; 2],
@@ -138,7 +138,7 @@ struct SegmentRates {
 }
 
 impl SegmentRates {
-    fn new(system: &System, wet: &Wet, w: &Workspace<f64>, j: usize) -> Self {
+    pub(super) fn new(system: &System, wet: &Wet, w: &Workspace<f64>, j: usize) -> Self {
         let (moment, force) = (w.coupling.mean_moment[j], w.coupling.mean_force[j]);
         let (moment_rate, force_rate) = (w.coupling.mean_moment_rate[j], w.coupling.mean_force_rate[j]);
         let mut pressure = [0.0; 2];
@@ -159,7 +159,7 @@ impl SegmentRates {
     }
 
     /// Rates of `lambda_p` and `alpha_p` for a coupling.
-    fn strain_rates(&self, (coupling, laws): (&CouplingLaw, &[AreaLaw; 2])) -> (f64, f64) {
+    pub(super) fn strain_rates(&self, (coupling, laws): (&CouplingLaw, &[AreaLaw; 2])) -> (f64, f64) {
         let [pu, pd] = self.pressure;
         let [pu_t, pd_t] = self.pressure_rate;
         match *coupling {

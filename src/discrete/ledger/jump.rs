@@ -1,6 +1,6 @@
 //! Work in zero time at a switch: a solid without inertia jumps with its load, and ends with their moment.
 
-use super::{EnergyRate, add, add_all, add_rates, fluid, ports, solid};
+use super::{EnergyRate, add, add_rates, beams, fluid, ports, solid, solid_state};
 use crate::discrete::velocity_jump::{self, Nodal};
 use crate::discrete::{System, TimeData, Workspace};
 use crate::functions::signals::Jet;
@@ -41,7 +41,7 @@ pub fn side(system: &System, now: &TimeData, yp: &[f64], w: &mut Workspace<f64>,
     out.fill(0.0);
     add_rates(system, now, yp, w);
     let curvature_rate = fluid::rates(system, w, out);
-    add_all(out, solid::flows(system, now, curvature_rate, w));
+    solid::flows(system, now, curvature_rate, w, out);
     fluid::lumped_jump(system, now, w, out);
     ports::lumped_jump(system, w, out);
     for flow in [
@@ -52,6 +52,7 @@ pub fn side(system: &System, now: &TimeData, yp: &[f64], w: &mut Workspace<f64>,
     ] {
         out[flow as usize] = 0.0;
     }
+    beams::lose_nothing(system, out);
 }
 
 /// Impulses and work of driven ends with a velocity jump. They move half a cell, or without axial waves the whole beam, and rotate the
@@ -96,7 +97,7 @@ pub fn strokes(
         }
         add(out, EnergyRate::ImpulseX, px);
         add(out, EnergyRate::ImpulseZ, pz);
-        let (arm, _) = solid::arms(system, w, node);
+        let (arm, _) = solid_state::arms(system, w, node);
         add(out, EnergyRate::AngularImpulse, arm.z * px - arm.x * pz);
     }
 }

@@ -1,12 +1,14 @@
 //! Energies, powers and impulses, exact in the semi-discrete system: the residual of their balance is the error of the
 //! time integration alone.
 
+pub mod beams;
 mod compressed;
 mod fluid;
 mod jump;
 pub mod ports;
 mod reactions;
 mod solid;
+mod solid_state;
 mod stored;
 mod tubes;
 
@@ -14,7 +16,7 @@ pub use compressed::{area_rate, lumped_slopes, pressure_rate};
 pub use fluid::pressure_rates;
 pub use jump::{side, strokes, travel};
 pub use reactions::compared;
-pub use solid::{energies_between, reaction};
+pub use solid::reaction;
 
 use crate::case::schema::Effect;
 use serde::{Deserialize, Serialize};
@@ -53,7 +55,8 @@ pub enum EnergyRate {
 }
 
 /// All rates, in the order of their storage. They are followed by outflow and throughput of every open network, then for each network by
-/// the outflow according to the ports' law and its noise level, then by the inflow of each port.
+/// the outflow according to the ports' law and its noise level, then by the inflow of each port, then by the rates of each beam of a
+/// structure.
 pub const ENERGY_RATES: [EnergyRate; 13] = [
     EnergyRate::Loads,
     EnergyRate::Ends,
@@ -115,7 +118,7 @@ pub struct StoredEnergies {
     /// Energy stored in walls in contact.
     #[serde(default)]
     pub contacts: f64,
-    /// Energy of springs to ground.
+    /// Energy of springs to ground and in joints.
     #[serde(default)]
     pub springs: f64,
     /// Kinetic energy of the surrounding fluid.
@@ -176,8 +179,7 @@ pub fn balance(stored: StoredEnergies, at_start: f64, integrals: &[f64]) -> Ener
 
 /// Number of integrated rates of a system.
 pub fn rate_count(system: &System) -> usize {
-    let wet = system.model.wet.as_ref();
-    wet.map_or(ENERGY_RATES.len(), |wet| ports::first(wet) + ports::count(wet))
+    beams::first(system) + beams::count(system)
 }
 
 /// Outflow of the `open`-th open network through its ports, and the volume that has passed them in either direction
@@ -208,7 +210,7 @@ pub fn flows(system: &System, now: &TimeData, yp: &[f64], w: &mut Workspace<f64>
     out.fill(0.0);
     add_rates(system, now, yp, w);
     let curvature_rate = fluid::rates(system, w, out);
-    add_all(out, solid::flows(system, now, curvature_rate, w));
+    solid::flows(system, now, curvature_rate, w, out);
     fluid::flows(system, now, w, out);
     ports::rates(system, now, w, out);
 }
@@ -238,7 +240,7 @@ fn add_rates(system: &System, now: &TimeData, yp: &[f64], w: &mut Workspace<f64>
 
 /// Stored energies of a state.
 pub fn energies(system: &System, now: &TimeData, w: CompleteState) -> StoredEnergies {
-    let mut e = solid::energies(system, now, &w);
+    let mut e = solid_state::energies(system, now, &w);
     e.bladders = stored::energy(system, &w);
     let [walls, held] = stored::in_vessels(system, &w);
     e.compression = compressed::energy(system, &w) + held;
@@ -250,12 +252,15 @@ pub fn energies(system: &System, now: &TimeData, w: CompleteState) -> StoredEner
         .iter()
         .map(|attached| attached.energy(system, now, &w))
         .sum();
-    let in_bed = system.foundation.iter().zip(&w.motion.u);
     e.springs += system.joints.energies(now, &w)[0];
+    let in_bed = system.foundation.iter().zip(&w.motion.u);
     e.springs += in_bed
         .map(|([x, z], u)| 0.5 * (x * u.x * u.x + z * u.z * u.z))
         .sum::<f64>();
-    e.relaxing = residual::relaxation::energy_and_loss(system, now, &w)[0];
+    let each = system.mesh.beams.iter();
+    e.relaxing = each
+        .map(|beam| residual::relaxation::energy_and_loss(system, now, &w, beam)[0])
+        .sum();
     e.section = residual::nonlinear::energy(system, &w);
     e.around = (0..system.mesh.nodes)
         .map(|i| system.lengths[i] * residual::ambient_fluid::kinetic(system, now, &w, i))
@@ -265,7 +270,7 @@ pub fn energies(system: &System, now: &TimeData, w: CompleteState) -> StoredEner
 
 /// Conserved quantities of a state.
 pub fn invariants(system: &System, now: &TimeData, w: CompleteState) -> Invariants {
-    let (momentum, angular_momentum) = solid::momenta(system, now, &w);
+    let (momentum, angular_momentum) = solid_state::momenta(system, now, &w);
     Invariants {
         momentum: [momentum.x, momentum.z],
         angular_momentum,

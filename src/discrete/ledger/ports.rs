@@ -1,7 +1,7 @@
 //! Flow, volume and pressure of each port.
 
+use super::ENERGY_RATES;
 use super::fluid::{beyond_stored, component, stored_rate};
-use super::{ENERGY_RATES, rate_count};
 use crate::discrete::fluid_mesh::{LinkEnd, MeshBridge};
 use crate::discrete::residual::fluid::{pressure_at, through_bridge};
 use crate::discrete::{System, TimeData, Workspace, injected_volume};
@@ -104,7 +104,7 @@ pub fn settle(system: &System, now: &TimeData, integrals: &mut [f64]) {
 pub(super) fn rates(system: &System, now: &TimeData, w: &Workspace<f64>, out: &mut [f64]) {
     if let Some(wet) = &system.model.wet {
         let first = first(wet);
-        flows(system, now, w, &mut out[first..rate_count(system)]);
+        flows(system, now, w, &mut out[first..first + count(wet)]);
     }
 }
 

@@ -38,38 +38,38 @@ pub struct BeamEnd {
 }
 
 impl BeamMesh {
-    /// Mesh of several beams, one after the other. Between two beams is an empty cell without length, so that a cell is between the node of
+    /// The mesh followed by those of further beams. Between two beams is an empty cell without length, so that a cell is between the node of
     /// its number and the next. Coordinates are those along each beam.
-    pub fn joined(first: Self, others: impl IntoIterator<Item = Self>) -> Self {
-        let mut all = first;
-        for next in others {
-            let (node, segment) = (all.nodes, all.segments);
-            all.lengths.push(0.0);
-            all.per_length.push(0.0);
-            all.borders.push([0.5; 2]);
-            let moved = |range: &Range<usize>, by: usize| range.start + by..range.end + by;
-            all.beams.extend(next.beams.iter().map(|own| BeamRanges {
-                nodes: moved(&own.nodes, node),
-                cells: moved(&own.cells, node),
-                segments: moved(&own.segments, segment),
-            }));
-            all.parts.extend(next.parts.iter().map(|part| moved(part, node)));
-            all.lengths.extend(next.lengths);
-            all.per_length.extend(next.per_length);
-            all.borders.extend(next.borders);
-            all.node_lengths.extend(next.node_lengths);
-            all.per_node_length.extend(next.per_node_length);
-            all.segment_lengths.extend(next.segment_lengths);
-            all.coordinates.extend(next.coordinates);
-            all.weights.extend(next.weights);
-            all.within_parts.extend(next.within_parts);
-            all.shortest = all.shortest.min(next.shortest);
-            all.segments += next.segments;
-            all.nodes += next.nodes;
-            all.cells = all.nodes - 1;
+    #[must_use]
+    pub fn followed_by(mut self, next: Self) -> Self {
+        let (node, segment) = (self.nodes, self.segments);
+        self.lengths.push(0.0);
+        self.per_length.push(0.0);
+        self.borders.push([0.5; 2]);
+        let moved = |range: &Range<usize>, by: usize| range.start + by..range.end + by;
+        self.beams.extend(next.beams.iter().map(|own| BeamRanges {
+            nodes: moved(&own.nodes, node),
+            cells: moved(&own.cells, node),
+            segments: moved(&own.segments, segment),
+        }));
+        self.parts.extend(next.parts.iter().map(|part| moved(part, node)));
+        self.lengths.extend(next.lengths);
+        self.per_length.extend(next.per_length);
+        self.borders.extend(next.borders);
+        self.node_lengths.extend(next.node_lengths);
+        self.per_node_length.extend(next.per_node_length);
+        self.segment_lengths.extend(next.segment_lengths);
+        self.coordinates.extend(next.coordinates);
+        self.weights.extend(next.weights);
+        self.within_parts.extend(next.within_parts);
+        Self {
+            shortest: self.shortest.min(next.shortest),
+            segments: segment + next.segments,
+            nodes: node + next.nodes,
+            cells: node + next.nodes - 1,
+            uniform: false,
+            ..self
         }
-        all.uniform = all.beams.len() == 1 && all.uniform;
-        all
     }
 
     /// Beam of a node.
@@ -120,6 +120,15 @@ impl BeamMesh {
             _ if node == own.nodes.start => Some((2 * beam, own.ends()[0])),
             _ if node + 1 == own.nodes.end => Some((2 * beam + 1, own.ends()[1])),
             _ => None,
+        }
+    }
+
+    /// Cells beside a node; twice the same at an end.
+    #[inline]
+    pub fn cells_beside(&self, node: usize) -> [usize; 2] {
+        match self.end_at(node) {
+            Some((_, end)) => [end.cell; 2],
+            None => [node - 1, node],
         }
     }
 }

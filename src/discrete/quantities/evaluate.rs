@@ -188,12 +188,8 @@ pub fn largest_strain(system: &System, now: &TimeData, w: &Workspace<f64>) -> (f
     let mesh = &system.mesh;
     (0..mesh.nodes)
         .map(|i| {
-            let stretch = match mesh.end_at(i) {
-                Some((_, end)) => w.shape.stretch[end.cell],
-                None => node_stretch(w, i, mesh.nodes - 1),
-            };
             (
-                (stretch - 1.0).abs()
+                (node_stretch(mesh, w, i) - 1.0).abs()
                     + (w.curvature()[i] - now.rest_curvature(i)).abs() * system.sections.fiber_of_curvature[i],
                 i,
             )

@@ -91,7 +91,11 @@ fn filled(system: &System) -> bool {
 }
 
 fn attached(system: &System) -> bool {
-    !system.attached.is_empty() || !system.foundation.is_empty()
+    let joints = &system.joints;
+    !system.attached.is_empty()
+        || !system.foundation.is_empty()
+        || !joints.hinges.is_empty()
+        || !joints.elastic.is_empty()
 }
 
 fn inert(system: &System) -> bool {
@@ -235,7 +239,7 @@ observables! {
         "kinetic energy of the fluid in tubes and along bladders";
     ContactEnergy: "contact_energy" ["J"], "contact energy", "elastic energy of contacts", Stored, Recorded, touching, QuantitySource::State(|look| look.stored.contacts),
         "elastic energy of contacts";
-    SpringEnergy: "spring_energy" ["J"], "spring energy", "energy of springs to ground", Stored, Recorded, attached, QuantitySource::State(|look| look.stored.springs),
+    SpringEnergy: "spring_energy" ["J"], "spring energy", "energy of springs to ground and in joints", Stored, Recorded, attached, QuantitySource::State(|look| look.stored.springs),
         "elastic energy of springs between beam and ground";
     SurroundingEnergy: "surrounding_energy" ["J"], "energy around", "energy of the fluid around the beam", Stored, Recorded, around, QuantitySource::State(|look| look.stored.around),
         "kinetic energy of the fluid around that moves with the beam";

@@ -55,11 +55,7 @@ impl PlacedNodes {
 
     /// Vector along the axes of the case, from its components along the axes of the beam of a node.
     pub fn turned(&self, node: usize, v: Planar<f64>) -> Planar<f64> {
-        let z = Planar::tangent(self.angle[node]);
-        Planar {
-            x: v.x * z.z + v.z * z.x,
-            z: v.z * z.z - v.x * z.x,
-        }
+        v.turned(Planar::tangent(self.angle[node]))
     }
 
     /// Position of a node with these displacements along the axes of its beam [m].

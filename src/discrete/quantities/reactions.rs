@@ -5,8 +5,10 @@ use super::probes::HistoryColumn;
 use crate::case::{Rotation, Translation};
 use crate::discrete::System;
 use crate::discrete::angle_unwrapping::{first_angle, nearest};
-use crate::discrete::ledger::{energies_between, reaction};
+use crate::discrete::ledger::beams::{self, BeamRate};
+use crate::discrete::ledger::reaction;
 use crate::discrete::residual::momentum::end_tangent;
+use crate::model::structure::BeamOfStructure;
 
 /// A reaction quantity of an end or of an attachment.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -21,13 +23,36 @@ enum ReactionKind {
     Attached(usize, usize),
     /// Rotation of another part of a joint relative to the first one: numbers of both angles, and of the joint.
     Turned([usize; 2], usize),
-    /// Kinetic (0) or elastic (1) energy of a beam of a structure, of which the end is one.
+    /// Kinetic (0) or elastic (1) energy of the beam of a structure that begins at the end.
     Energy(usize, usize),
+    /// Integral of a rate of this beam.
+    Passed(usize, BeamRate),
+    /// Power that a joint takes from its beams.
+    Joint(usize),
 }
 
 const ENERGIES: [[&str; 2]; 2] = [
     ["kinetic_energy", "kinetic energy of the beam"],
     ["elastic_energy", "elastic energy of the beam"],
+];
+
+const PASSED: [(BeamRate, &str, &str); 4] = [
+    (
+        BeamRate::Work,
+        "work",
+        "work of loads, driven ends, springs and contacts on the beam",
+    ),
+    (BeamRate::Joints, "work_joints", "work of its joints on the beam"),
+    (
+        BeamRate::Fluid,
+        "work_fluid",
+        "work of the pressures of its bladders on the beam",
+    ),
+    (
+        BeamRate::Loss,
+        "dissipated",
+        "dissipated by damping and drag in the beam",
+    ),
 ];
 
 /// First part of the names of quantities of the beam of an end; empty for a single beam.
@@ -39,8 +64,8 @@ fn beam_of(system: &System, end: usize) -> String {
 const ENDS: [&str; 2] = ["root", "tip"];
 const AXES: [&str; 2] = ["x", "z"];
 
-/// All reaction quantities of a system, ends first; a reduced model has those of the full one.
-fn all(system: &System) -> Vec<ReactionKind> {
+/// All reaction quantities of a system, ends first; a reduced model has those of the full one. A state at rest has no powers and integrals.
+fn all(system: &System, at_rest: bool) -> Vec<ReactionKind> {
     let given = |motion: &Translation| matches!(motion, Translation::Displacement(_));
     let mut all = vec![];
     for (k, end) in system.model.ends.iter().enumerate() {
@@ -61,7 +86,17 @@ fn all(system: &System) -> Vec<ReactionKind> {
     let structure = system.model.structure.iter();
     let roots = structure.flat_map(|structure| structure.beams.iter().enumerate());
     let roots = roots.filter(|(_, beam)| beam.piece.at_end[0]).map(|(k, _)| 2 * k);
-    all.extend(roots.flat_map(|root| [0, 1].map(|kind| ReactionKind::Energy(root, kind))));
+    // energies of finite strain are those of beam and bladders together
+    let closes = !at_rest && system.model.strain_energy().is_none();
+    for root in roots {
+        all.extend([0, 1].map(|kind| ReactionKind::Energy(root, kind)));
+        let passed = PASSED.iter().filter(|_| closes);
+        all.extend(passed.map(|(rate, ..)| ReactionKind::Passed(root, *rate)));
+    }
+    if !at_rest {
+        let joints = system.model.structure.iter().map(|structure| structure.joints.len());
+        all.extend((0..joints.sum()).map(ReactionKind::Joint));
+    }
     for (k, attachment) in system.model.attachments.iter().enumerate() {
         let holds = |axis: &usize| attachment.stiffness[*axis] > 0.0 || attachment.damping[*axis] > 0.0;
         all.extend((0..2).filter(holds).map(|axis| ReactionKind::Attached(k, axis)));
@@ -90,25 +125,27 @@ fn attachment(system: &System, number: usize) -> (String, usize) {
     (beam_of(system, 2 * own), number - first + 1)
 }
 
-/// Energy of all parts of the beam that begins at a root [J].
-fn energy(look: &StateView, root: usize, kind: usize) -> f64 {
-    let system = look.system;
-    let Some(structure) = &system.model.structure else {
-        return 0.0;
-    };
-    let beam = structure.beams[root / 2].piece.beam;
-    let own = structure.beams.iter().zip(&system.mesh.beams);
-    let own = own.filter(|(one, _)| one.piece.beam == beam).map(|(_, ranges)| {
-        let (nodes, cells) = (ranges.nodes.clone(), ranges.cells.clone());
-        let e = energies_between(system, look.now, &look.w, nodes, cells);
-        [e.kinetic + e.rotary, e.axial + e.bending][kind]
-    });
-    own.sum()
+/// Numbers on the mesh of all parts of the beam that begins at a root.
+fn parts(system: &System, root: usize) -> impl Iterator<Item = usize> + '_ {
+    let beams = system.model.structure.iter().flat_map(|structure| &structure.beams);
+    let own = beams.clone().nth(root / 2).map(|beam| beam.piece.beam);
+    let of = move |(_, beam): &(usize, &BeamOfStructure)| Some(beam.piece.beam) == own;
+    beams.enumerate().filter(of).map(|(part, _)| part)
+}
+
+/// For each column of a run: the integrals of which it is the sum, if it is no part of a state.
+pub fn integrals(system: &System) -> impl Iterator<Item = Vec<usize>> + '_ {
+    all(system, false).into_iter().map(|one| match one {
+        ReactionKind::Passed(root, rate) => parts(system, root)
+            .map(|part| beams::index(system, part, rate))
+            .collect(),
+        _ => vec![],
+    })
 }
 
 /// Columns of the reaction quantities of a system.
-pub fn columns(system: &System) -> impl Iterator<Item = HistoryColumn> {
-    all(system).into_iter().map(|one| {
+pub fn columns(system: &System, at_rest: bool) -> impl Iterator<Item = HistoryColumn> {
+    all(system, at_rest).into_iter().map(|one| {
         let of = |end: usize| beam_of(system, end);
         let (name, unit, about) = match one {
             ReactionKind::End(k, axis) => (
@@ -145,6 +182,18 @@ pub fn columns(system: &System) -> impl Iterator<Item = HistoryColumn> {
                 let [name, about] = ENERGIES[kind];
                 (format!("{}{name}", of(root)), "J", about.to_owned())
             }
+            ReactionKind::Passed(root, rate) => {
+                let [name, about] = PASSED
+                    .iter()
+                    .find(|(one, ..)| *one == rate)
+                    .map_or([""; 2], |(_, name, about)| [*name, *about]);
+                (format!("{}{name}", of(root)), "J", about.to_owned())
+            }
+            ReactionKind::Joint(k) => (
+                format!("joint_{}_power", k + 1),
+                "W",
+                format!("power that joint {} takes from its beams", k + 1),
+            ),
             ReactionKind::Attached(k, axis) => {
                 let (beam, number) = attachment(system, k);
                 (
@@ -158,12 +207,12 @@ pub fn columns(system: &System) -> impl Iterator<Item = HistoryColumn> {
     })
 }
 
-/// Values of the reaction quantities in a state.
-pub fn values(look: &StateView, put: &mut impl FnMut(f64)) {
+/// Values of the reaction quantities in a state; without integrals those of a state at rest.
+pub fn values(look: &StateView, integrals: Option<&[f64]>, put: &mut impl FnMut(f64)) {
     let (system, now, w) = (look.system, look.now, &*look.w);
     let ends: Vec<_> = system.mesh.ends().map(|(_, end)| end).collect();
     let node = |end: usize| ends[end].node;
-    for one in all(system) {
+    for one in all(system, integrals.is_none()) {
         put(match one {
             ReactionKind::End(k, axis) => reaction(system, now, w, node(k))[axis],
             ReactionKind::Couple(k) => -ends[k].outward * system.total_moment(w, node(k)),
@@ -172,7 +221,16 @@ pub fn values(look: &StateView, put: &mut impl FnMut(f64)) {
                 nearest(tangent.x.atan2(tangent.z), first_angle(system, now, w, k / 2))
             }
             ReactionKind::Turned([first, other], _) => w.shape.joints.angle[other] - w.shape.joints.angle[first],
-            ReactionKind::Energy(root, kind) => energy(look, root, kind),
+            ReactionKind::Energy(root, kind) => parts(system, root)
+                .map(|part| {
+                    let e = beams::energies(system, now, w, part);
+                    [e.kinetic + e.rotary, e.axial + e.bending + e.relaxing][kind]
+                })
+                .sum(),
+            ReactionKind::Passed(root, rate) => parts(system, root)
+                .filter_map(|part| integrals?.get(beams::index(system, part, rate)))
+                .sum(),
+            ReactionKind::Joint(k) => beams::power_of_joint(system, now, w, k),
             ReactionKind::Attached(k, axis) => {
                 let own = system.attached.iter().filter(|attached| attached.number == k);
                 own.map(|a| a.spring(w)[axis] + a.dashpot(w)[axis]).sum()

@@ -11,7 +11,7 @@ use crate::model::network::LinkKind;
 /// Columns of all ports, accumulators, contacts and reactions of a system; with `at_rest` those of a state at rest.
 pub fn columns(system: &System, at_rest: bool) -> Vec<HistoryColumn> {
     let mut all = of_network(system, at_rest);
-    all.extend(reactions::columns(system));
+    all.extend(reactions::columns(system, at_rest));
     let contacts = &system.model.contacts;
     let names = short("contact", contacts.iter().map(|one| &one.name));
     for (law, (name, short)) in contacts.iter().zip(names) {
@@ -146,11 +146,17 @@ fn bladders(labels: &BladderLabels) -> impl Iterator<Item = HistoryColumn> {
     })
 }
 
-/// For each column of a run: the port whose volume it is, if any. This volume is an integral and not part of a state.
-pub fn integrated(system: &System) -> Vec<Option<usize>> {
-    let ports = system.model.wet.as_ref().map_or(0, ports::count);
-    let volume = |column: usize| (column < 4 * ports && column % 4 == 3).then_some(column / 4);
-    (0..columns(system, false).len()).map(volume).collect()
+/// For each column of a run: the integrals of which it is the sum, if it is no part of a state.
+pub fn integrated(system: &System) -> Vec<Vec<usize>> {
+    let wet = system.model.wet.as_ref();
+    let volume = |column: usize| {
+        let wet = wet.filter(|wet| column < 4 * ports::count(wet) && column % 4 == 3);
+        wet.map(|wet| ports::first(wet) + column / 4).into_iter().collect()
+    };
+    let mut all: Vec<_> = (0..of_network(system, false).len()).map(volume).collect();
+    all.extend(reactions::integrals(system));
+    all.resize(columns(system, false).len(), vec![]);
+    all
 }
 
 /// Columns of a run for all flows and pressures of the network: their indices, and their names with units.
@@ -170,7 +176,7 @@ pub fn values(look: &StateView, integrals: Option<&[f64]>, out: &mut [f64]) {
         }
     };
     network_values(look, integrals, &mut put);
-    reactions::values(look, &mut put);
+    reactions::values(look, integrals, &mut put);
     for (number, law) in look.system.model.contacts.iter().enumerate() {
         let felt = contact_points::felt(look.system, &look.w, number);
         put(felt.normal);

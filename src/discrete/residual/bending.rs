@@ -98,7 +98,7 @@ fn given_moment<T: Scalar>(system: &System, now: &TimeData, node: usize, w: &mut
     }
     let published = system.model.published();
     let stretch = if published {
-        node_stretch(w, node, system.mesh.nodes - 1)
+        node_stretch(&system.mesh, w, node)
     } else {
         T::constant(1.0)
     };
@@ -133,7 +133,7 @@ fn given_moment<T: Scalar>(system: &System, now: &TimeData, node: usize, w: &mut
 pub fn elastic_curvature<T: Scalar>(system: &System, now: &TimeData, w: &Workspace<T>, node: usize) -> T {
     let mut alpha = w.shape.kappa[node];
     if system.model.published() {
-        alpha = alpha * node_stretch(w, node, system.mesh.nodes - 1);
+        alpha = alpha * node_stretch(&system.mesh, w, node);
     }
     alpha - pressure_curvature(system, w, node) - T::constant(now.rest_curvature(node))
 }

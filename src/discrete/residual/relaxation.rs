@@ -1,6 +1,9 @@
 //! Stress relaxation of the solid.
 
+use std::ops::Range;
+
 use super::solid::node_stretch;
+use crate::discrete::mesh::BeamRanges;
 use crate::discrete::{System, TimeData, Workspace};
 use crate::numerics::Scalar;
 
@@ -135,27 +138,38 @@ fn remembered<T: Scalar>(system: &System, kept: &[T], rest: f64, node: usize) ->
     (sum, ratios)
 }
 
-/// Energy stored in the branches [J], and their dissipation [W].
-pub fn energy_and_loss(system: &System, now: &TimeData, w: &Workspace<f64>) -> [f64; 2] {
+/// Energy stored in the branches of a beam [J], and their dissipation [W].
+pub fn energy_and_loss(system: &System, now: &TimeData, w: &Workspace<f64>, beam: &BeamRanges) -> [f64; 2] {
     let (mesh, sections, relaxed) = (&system.mesh, &system.sections, &w.relaxed);
     let mut sums = [0.0; 2];
-    let mut add = |strain: &[f64], rest: &[f64], [kept, rate]: [&[f64]; 2], stiffness: &dyn Fn(usize) -> f64| {
+    let mut add = |places: &Range<usize>,
+                   strain: &[f64],
+                   rest: &[f64],
+                   [kept, rate]: [&[f64]; 2],
+                   stiffness: &dyn Fn(usize) -> f64| {
         let count = strain.len().max(1);
         let branches = kept.chunks_exact(count).zip(rate.chunks_exact(count));
         for (branch, (kept, rate)) in system.model.relaxation.iter().zip(branches) {
-            for (place, (kept, rate)) in kept.iter().zip(rate).enumerate() {
+            for place in places.clone() {
                 let stiffness = stiffness(place) * branch.modulus_ratio;
-                let slip = beyond(strain, rest, place) - kept;
+                let slip = beyond(strain, rest, place) - kept[place];
                 sums[0] += 0.5 * stiffness * slip * slip;
-                sums[1] += stiffness * slip * rate;
+                sums[1] += stiffness * slip * rate[place];
             }
         }
     };
     let of_curvature = |node: usize| mesh.node_lengths[node] * sections.bending[node];
     let curvatures = [&relaxed.curvature[..], &relaxed.curvature_rate];
-    add(&w.shape.kappa, &now.rest_curvature[0], curvatures, &of_curvature);
+    add(
+        &beam.nodes,
+        &w.shape.kappa,
+        &now.rest_curvature[0],
+        curvatures,
+        &of_curvature,
+    );
     let of_stretch = |cell: usize| mesh.lengths[cell] * sections.axial[cell];
     add(
+        &beam.cells,
         &w.shape.strain,
         &[],
         [&relaxed.stretch, &relaxed.stretch_rate],
@@ -163,6 +177,7 @@ pub fn energy_and_loss(system: &System, now: &TimeData, w: &Workspace<f64>) -> [
     );
     let of_shear = |cell: usize| mesh.lengths[cell] * sections.shear[cell];
     add(
+        &beam.cells,
         &w.shape.sections.shear,
         &[],
         [&relaxed.shear, &relaxed.shear_rate],
@@ -174,7 +189,7 @@ pub fn energy_and_loss(system: &System, now: &TimeData, w: &Workspace<f64>) -> [
 /// Sets the branches of a state `y` (SI) to the relaxed strains of a beam with this shape and these pressures. `w` contains the strains,
 /// for the same system or for one without branches. A given moment is then entirely elastic.
 pub fn settle(system: &System, now: &TimeData, w: &Workspace<f64>, y: &mut [f64]) {
-    let (own, last) = (&system.layout.relaxation, system.mesh.nodes - 1);
+    let own = &system.layout.relaxation;
     for (unknown, strain) in own.stretch.clone().zip(w.shape.strain.iter().cycle()) {
         y[unknown] = *strain;
     }
@@ -187,7 +202,7 @@ pub fn settle(system: &System, now: &TimeData, w: &Workspace<f64>, y: &mut [f64]
         let mut curvature = w.shape.kappa[node];
         if let Some(relaxing) = w.forces.relaxing_moment.get(node).filter(|_| turns) {
             let stretch = if system.model.published() {
-                node_stretch(w, node, last)
+                node_stretch(&system.mesh, w, node)
             } else {
                 1.0
             };

@@ -4,7 +4,7 @@ use super::{eccentric, fourth_order, timoshenko};
 use crate::case::schema::Effect;
 use crate::discrete::time_data::EndData;
 use crate::discrete::workspace::{BeamShape, Sections};
-use crate::discrete::{System, TimeData, Workspace, attached, bodies};
+use crate::discrete::{BeamMesh, System, TimeData, Workspace, attached, bodies};
 use crate::model::Kinematics;
 use crate::numerics::{Planar, Scalar, wide};
 
@@ -244,14 +244,9 @@ pub fn couple<T: Scalar>(system: &System, now: &TimeData, w: &Workspace<T>, c: u
 
 /// Stretch `λ` at a node: mean of the adjacent cells.
 #[inline]
-pub fn node_stretch<T: Scalar>(w: &Workspace<T>, node: usize, last: usize) -> T {
-    if node == 0 {
-        w.shape.stretch[0]
-    } else if node == last {
-        w.shape.stretch[last - 1]
-    } else {
-        (w.shape.stretch[node - 1] + w.shape.stretch[node]) * 0.5
-    }
+pub fn node_stretch<T: Scalar>(mesh: &BeamMesh, w: &Workspace<T>, node: usize) -> T {
+    let [before, behind] = mesh.cells_beside(node);
+    (w.shape.stretch[before] + w.shape.stretch[behind]) * 0.5
 }
 
 /// `[E13]` Section force in lab axes, including the rotary part:

@@ -40,6 +40,10 @@ pub fn unpack<T: Scalar>(system: &System, now: &TimeData, y: &[T], yp: &[T], w: 
             (w.shape.joints.rate[number], w.shape.joints.acceleration[number]) = (y[rate], yp[rate]);
         }
     }
+    let joints = &mut w.shape.joints;
+    for of in [&mut joints.angle, &mut joints.rate, &mut joints.acceleration] {
+        system.joints.add_first(of);
+    }
     system.joints.move_nodes(now, w);
     let sections = &mut w.shape.sections;
     copy(&mut sections.angle, y, &l.turning.angle);

@@ -160,13 +160,7 @@ fn shapes(place: &Place) -> Value {
     let mut kept: Vec<usize> = (0..states).rev().step_by(step).collect();
     kept.reverse();
     let placed = place.placed(rows.len());
-    let nodes = match &placed {
-        Some(_) => thinned_nodes(rows.len(), placed.as_ref(), MOST_NODES),
-        None => {
-            let (stride, last) = (rows.len().div_ceil(MOST_NODES), rows.len() - 1);
-            (0..rows.len()).filter(|k| k % stride == 0 || *k == last).collect()
-        }
-    };
+    let nodes = thinned_nodes(rows.len(), placed.as_ref(), MOST_NODES);
     let along = |offset: usize| {
         let pairs = kept.iter().flat_map(|s| nodes.iter().map(move |k| (s, k)));
         base64::numbers(pairs.map(|(s, k)| rows[*k][1 + 2 * s + offset]))

@@ -71,14 +71,14 @@ pub fn to_json(case: &Case) -> Option<Value> {
 /// A wall or a circle: its face and its description.
 fn obstacle(law: &ContactLaw) -> Value {
     let stiffness = match law.at {
-        None => format!("all along, {}", q(law.stiffness, "Pa")),
+        None => format!("all along, {}", q(law.pressing.stiffness, "Pa")),
         Some(at) => format!(
             "at {} of the length, {}",
             trimmed(&significant(at, 3)),
-            q(law.stiffness, "N/m")
+            q(law.pressing.stiffness, "N/m")
         ),
     };
-    let lossy = [("damping", law.damping), ("friction", law.friction)];
+    let lossy = [("damping", law.pressing.damping), ("friction", law.pressing.friction)];
     let lossy = lossy
         .iter()
         .filter(|(_, size)| *size > 0.0)

@@ -78,7 +78,8 @@ impl PathCoordinates {
                     u[node][axis] = x[unknown] * l.scales[unknown];
                 }
             }
-            let joint_angles: Vec<f64> = l.joints.angle.clone().map(|k| x[k] * l.scales[k]).collect();
+            let mut joint_angles: Vec<f64> = l.joints.angle.clone().map(|k| x[k] * l.scales[k]).collect();
+            system.joints.add_first(&mut joint_angles);
             let lines: Vec<Planar<f64>> = angles
                 .iter()
                 .zip(lengths)

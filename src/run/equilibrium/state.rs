@@ -132,7 +132,11 @@ pub fn restate(from: &mut BeamDae, share: f64, y: &[f64], to: &System, now: &Tim
     let mut z = vec![0.0; to.layout.len];
     displacements(&w, to, now, &mut z);
     z[to.layout.turning.angle.clone()].copy_from_slice(&w.shape.sections.angle);
-    z[to.layout.joints.angle.clone()].copy_from_slice(&w.shape.joints.angle);
+    let angles = to.joints.unknowns(&w.shape.joints.angle);
+    z[to.layout.joints.angle.clone()]
+        .iter_mut()
+        .zip(angles)
+        .for_each(|(z, angle)| *z = angle);
     relaxation::settle(to, now, &w, &mut z);
     fluid(&w, to, &mut z);
     flows(before, &w, to, &mut z);

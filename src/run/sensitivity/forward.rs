@@ -31,8 +31,8 @@ pub struct ForwardSensitivities<'a> {
     pub(super) columns: Vec<Observable>,
     /// Columns of ports, accumulators, walls and reactions.
     pub(super) stations: Vec<HistoryColumn>,
-    /// For each of these columns, the port whose volume it contains, if any.
-    pub(super) volumes: Vec<Option<usize>>,
+    /// For each of these columns, the integrals of which it is the sum, if it is no part of a state.
+    pub(super) integrated: Vec<Vec<usize>>,
     /// Columns at probes.
     pub(super) probes: Vec<HistoryColumn>,
     pub(super) s: Vec<Vec<f64>>,
@@ -137,7 +137,7 @@ impl<'a> ForwardSensitivities<'a> {
                 true => vec![],
                 false => stations::columns(dae.system(), false),
             },
-            volumes: match by.states_only {
+            integrated: match by.states_only {
                 true => vec![],
                 false => stations::integrated(dae.system()),
             },

@@ -2,7 +2,7 @@
 
 use super::forward::ForwardSensitivities;
 use crate::dae::BeamDae;
-use crate::discrete::ledger::{self, ports};
+use crate::discrete::ledger;
 use crate::discrete::quantities::{Extremes, Observable, ObservableRow, QuantitySource, StateView, probes, stations};
 use crate::integrate::IntegrationError;
 use crate::sundials::Ida;
@@ -139,7 +139,7 @@ impl ForwardSensitivities<'_> {
                     let (own, rest) = out.split_at_mut(reads.len());
                     let (at_stations, probed) = rest.split_at_mut(self.stations.len());
                     own.iter_mut().zip(&reads).for_each(|(out, read)| *out = read(&look));
-                    // volumes are set below
+                    // integrals are set below
                     stations::values(&look, Some(&[]), at_stations);
                     let values = probes::values(&look);
                     probed.iter_mut().zip(values).for_each(|(out, value)| *out = value);
@@ -153,10 +153,14 @@ impl ForwardSensitivities<'_> {
             };
             let derivatives = self.columns.iter().map(of).map(|slope| slope / parameter.value);
             self.row.extend(derivatives);
-            let volumes = self.volumes.iter().map(Some).chain(std::iter::repeat(None));
-            let behind = slopes.zip(volumes).map(|(slope, volume)| match volume {
-                Some(Some(port)) => ports::let_in(dae.system(), integrals, *port),
-                _ => slope,
+            let sums = self
+                .integrated
+                .iter()
+                .map(Vec::as_slice)
+                .chain(std::iter::repeat(&[][..]));
+            let behind = slopes.zip(sums).map(|(slope, sum)| match sum {
+                [] => slope,
+                sum => sum.iter().map(|one| integrals[*one]).sum(),
             });
             self.row.extend(behind.map(|slope| slope / parameter.value));
         }

@@ -3,10 +3,10 @@
 use super::curve::{Curve, SectionPosition};
 use super::cutout::Cutout;
 use super::surface::{Data, Surface};
+use crate::numerics::Planar;
 
 /// Surface of the beam. Points have the data of their section's center, quadrilaterals those of their beam cell; `field` returns a recorded
-/// field at the instant.
-/// `turn` is the angle from z towards x of the straight beam [rad].
+/// field at the instant, `turn` is the angle from z towards x of the straight beam [rad].
 pub(super) fn surface<'a>(
     cutout: &Cutout,
     curve: &Curve,
@@ -62,9 +62,9 @@ pub(super) fn surface<'a>(
     };
     let vector = |axial: &str, transverse: &str| -> Vec<f64> {
         let both = each(axial).into_iter().zip(each(transverse));
-        let (sin, cos) = turn.sin_cos();
-        both.flat_map(|(a, t)| [a * cos - t * sin, t * cos + a * sin, 0.0])
-            .collect()
+        let direction = Planar::tangent(turn);
+        let placed = both.map(|(a, t)| Planar::new(t, a).turned(direction));
+        placed.flat_map(|v| [v.z, v.x, 0.0]).collect()
     };
     out.of_points = vec![
         Data::vector("u_m", vector("u3_m", "u1_m")),

@@ -68,12 +68,10 @@ impl Curve {
 
     /// The curve in the axes of the case, of a beam with its root at `origin` and an angle from z towards x [rad].
     pub fn placed(mut self, origin: Planar<f64>, angle: f64) -> Self {
-        let z = Planar::tangent(angle);
+        let direction = Planar::tangent(angle);
         for node in &mut self.nodes {
-            (node.x, node.z) = (
-                origin.x + node.x * z.z + node.z * z.x,
-                origin.z + node.z * z.z - node.x * z.x,
-            );
+            let at = origin + Planar::new(node.x, node.z).turned(direction);
+            (node.x, node.z) = (at.x, at.z);
             node.angle += angle;
         }
         self

@@ -1,15 +1,14 @@
 //! Joints of a structure on the mesh: ends of beams that share their motion, and the angles of joints.
 
-use super::elastic_joints::MeshedElasticJoint;
-use super::{BeamMesh, System, TimeData, Workspace};
-use crate::case::Translation;
-use crate::case::schema::{Effect, Hinge};
-use crate::model::Model;
-use crate::model::structure::{Structure, hinge_energy, hinge_moments};
-use crate::numerics::{Planar, Scalar};
+mod build;
+mod elastic;
 
-/// Distance of places, relative to the length of the mesh's cells, that counts as rounding.
-const NEAR: f64 = 1e-9;
+pub use elastic::MeshedElasticJoint;
+
+use super::{System, TimeData, Workspace};
+use crate::case::schema::Hinge;
+use crate::model::structure::{hinge_energy, hinge_moments};
+use crate::numerics::{Planar, Scalar};
 
 /// Joints of a structure; empty for a single beam.
 ///
@@ -43,17 +42,21 @@ pub struct MeshJoints {
     pub driven: Vec<(usize, usize, usize)>,
     /// Number of the angle of each end.
     of_ends: Vec<Option<usize>>,
+    /// True for each end in a joint.
+    joined: Vec<bool>,
 }
 
 /// A node that follows another.
 #[derive(Clone, Debug)]
 pub struct Tie {
+    /// Number of its joint.
+    pub joint: usize,
     /// The node.
     pub node: usize,
     /// The node that it follows.
     pub to: usize,
-    /// `(cos δ, sin δ)`.
-    turn: [f64; 2],
+    /// `(sin δ, cos δ)`.
+    turn: Planar<f64>,
     /// Number of the joint's angle, and the arm along the axes of the own beam [m]; none where the places coincide.
     pub arm: Option<(usize, Planar<f64>)>,
 }
@@ -61,19 +64,26 @@ pub struct Tie {
 /// The angle of a joint, common to some of its ends.
 #[derive(Clone, Debug)]
 pub struct JointAngle {
+    /// Number of its joint.
+    pub joint: usize,
     /// Rotary inertia `J` [kg m^2].
     pub inertia: f64,
     /// Nodes of its ends, each with -1 for a tip and 1 for a root.
     pub ends: Vec<(usize, f64)>,
     /// True if its rate is an unknown.
     pub moves: bool,
-    /// True if moments depend on its rate.
+    /// True if its own moments depend on the rate of its unknown.
     pub damped: bool,
+    /// The first angle of its joint, to which its unknown is relative: a damper between two angles without inertia then depends on the rate
+    /// of one unknown.
+    pub relative_to: Option<usize>,
 }
 
 /// A hinge between two angles.
 #[derive(Clone, Debug)]
 pub struct MeshHinge {
+    /// Number of its joint.
+    pub joint: usize,
     /// Numbers of both angles.
     pub angles: [usize; 2],
     /// Spring, damper and stop.
@@ -88,6 +98,14 @@ impl MeshHinge {
             rest_rad: now.hinge_rest * self.law.rest_rad,
             ..self.law
         }
+    }
+
+    /// Power that it takes [W].
+    pub fn power(&self, now: &TimeData, w: &Workspace<f64>) -> f64 {
+        let [angle, rate] =
+            [&w.shape.joints.angle, &w.shape.joints.rate].map(|of| of[self.angles[1]] - of[self.angles[0]]);
+        let moments = hinge_moments(&self.law_now(now), angle, rate);
+        (moments.elastic + moments.damping) * rate
     }
 }
 
@@ -114,22 +132,24 @@ impl<T: Scalar> JointMotion<T> {
     }
 }
 
-/// `R (x, z)` with `(cos, sin)` of its angle.
-#[inline]
-pub(super) fn turned<T: Scalar>([cos, sin]: [f64; 2], v: Planar<T>) -> Planar<T> {
-    Planar::new(v.x * cos + v.z * sin, v.z * cos - v.x * sin)
-}
-
 impl Tie {
     /// Displacement of the node from that of the node that it follows.
     pub fn from_first(&self, u: Planar<f64>, angles: &[f64]) -> Planar<f64> {
-        turned(self.turn, u) + self.by_arm(angles)
+        u.turned(self.turn) + self.by_arm(angles)
     }
 
     /// Displacement of the node that it follows from its own.
     pub fn to_first(&self, u: Planar<f64>, angles: &[f64]) -> Planar<f64> {
-        let [cos, sin] = self.turn;
-        turned([cos, -sin], u - self.by_arm(angles))
+        (u - self.by_arm(angles)).turned_back(self.turn)
+    }
+
+    /// Velocity of the node beyond that of the joint's body, which is rounding.
+    pub fn slip(&self, w: &Workspace<f64>) -> Planar<f64> {
+        let moved = w.motion.v[self.to].turned(self.turn);
+        let turned = self.arm.map_or_else(Planar::default, |(angle, arm)| {
+            lever(w.shape.joints.angle[angle], arm).1 * w.shape.joints.rate[angle]
+        });
+        w.motion.v[self.node] - moved - turned
     }
 
     fn by_arm(&self, angles: &[f64]) -> Planar<f64> {
@@ -139,96 +159,30 @@ impl Tie {
 }
 
 impl MeshJoints {
-    /// Joints of a model on the joined mesh.
-    pub fn new(model: &Model, mesh: &BeamMesh) -> Self {
-        let Some(structure) = &model.structure else {
-            return Self::default();
-        };
-        let mut all = Self {
-            of_ends: vec![None; model.ends.len()],
-            ..Self::default()
-        };
-        let ends: Vec<_> = mesh.ends().map(|(_, end)| end).collect();
-        for (k, end) in model.ends.iter().enumerate() {
-            for (axis, motion) in [&end.transverse, &end.axial].into_iter().enumerate() {
-                if matches!(motion, Translation::Displacement(_)) {
-                    all.driven.push((k, ends[k].node, axis));
-                }
-            }
-        }
-        let inertia = model.effects.has(Effect::SolidInertia);
-        let damped = model.section.bends_viscously();
-        for joint in &structure.joints {
-            let Some(first) = joint.ends().next() else { continue };
-            let resists = joint
-                .hinge
-                .filter(|hinge| hinge.stiffness_n_m_rad > 0.0 || hinge.damping_n_m_s_rad > 0.0 || hinge.stop.is_some());
-            let elastic = joint.elastic.is_some();
-            let arms = |group: &[usize]| group.iter().any(|end| arm(structure, mesh, first, *end).is_some());
-            let mut numbers = vec![];
-            for (k, group) in joint.groups.iter().enumerate() {
-                let inertia_of_group = if k == 0 { joint.inertia } else { 0.0 };
-                if group.len() < 2 && resists.is_none() && !elastic && inertia_of_group == 0.0 {
-                    continue; // a free end
-                }
-                let number = all.angles.len();
-                numbers.push(number);
-                for end in group {
-                    all.of_ends[*end] = Some(number);
-                }
-                all.angles.push(JointAngle {
-                    inertia: inertia_of_group,
-                    ends: group.iter().map(|end| (ends[*end].node, -ends[*end].outward)).collect(),
-                    moves: inertia && (inertia_of_group > 0.0 || (!elastic && arms(group))),
-                    damped: damped
-                        || resists.is_some_and(|hinge| hinge.damping_n_m_s_rad > 0.0)
-                        || joint.elastic.is_some_and(|law| law.damping != [[0.0; 3]; 3]),
-                });
-            }
-            if let (Some(law), [first, others @ ..]) = (resists, &numbers[..]) {
-                all.hinges.extend(others.iter().map(|other| MeshHinge {
-                    angles: [*first, *other],
-                    law,
-                }));
-            }
-            let turn = |from: usize, to: usize| {
-                let [from, to] = [from, to].map(|end| structure.beams[end / 2].piece.angle);
-                let (sin, cos) = (from - to).sin_cos();
-                [cos, sin]
-            };
-            let firsts = joint.groups.iter().filter_map(|group| group.first().copied());
-            if let (Some(law), [own, others @ ..]) = (joint.elastic, &numbers[..]) {
-                all.elastic
-                    .extend(others.iter().zip(firsts.clone().skip(1)).map(|(other, end)| {
-                        MeshedElasticJoint {
-                            nodes: [ends[first].node, ends[end].node],
-                            angles: [*own, *other],
-                            turn: turn(end, first),
-                            apart: structure.beams[first / 2]
-                                .piece
-                                .own(structure.place_of(end) - structure.place_of(first)),
-                            law,
-                        }
-                    }));
-            }
-            for (group, of_group) in joint.groups.iter().zip(firsts) {
-                let to = if elastic { of_group } else { first };
-                for end in group.iter().copied().filter(|end| *end != to) {
-                    all.ties.push(Tie {
-                        node: ends[end].node,
-                        to: ends[to].node,
-                        turn: turn(to, end),
-                        arm: all.of_ends[end].zip(arm(structure, mesh, to, end)),
-                    });
-                }
-            }
-        }
-        all
-    }
-
     /// Number of the angle of an end.
     pub fn angle_of(&self, end: usize) -> Option<usize> {
         self.of_ends.get(end).copied().flatten()
+    }
+
+    /// Sets the angles of the beams from the unknown ones, or their rates likewise.
+    pub fn add_first<T: Scalar>(&self, angles: &mut [T]) {
+        for (k, angle) in self.angles.iter().enumerate() {
+            if let Some(first) = angle.relative_to {
+                let moved = angles[first];
+                angles[k] += moved;
+            }
+        }
+    }
+
+    /// The unknown angles, of angles of the beams.
+    pub fn unknowns(&self, angles: &[f64]) -> impl Iterator<Item = f64> {
+        let own = self.angles.iter().zip(angles);
+        own.map(|(one, angle)| angle - one.relative_to.map_or(0.0, |first| angles[first]))
+    }
+
+    /// True for an end in a joint.
+    pub fn holds(&self, end: usize) -> bool {
+        self.joined.get(end).copied().unwrap_or(false)
     }
 
     /// Sets the motion of driven and of tied nodes.
@@ -242,7 +196,7 @@ impl MeshJoints {
             }
         }
         for tie in &self.ties {
-            let [mut u, mut v, mut a] = [&motion.u, &motion.v, &motion.a].map(|field| turned(tie.turn, field[tie.to]));
+            let [mut u, mut v, mut a] = [&motion.u, &motion.v, &motion.a].map(|field| field[tie.to].turned(tie.turn));
             if let Some((angle, arm)) = tie.arm {
                 let (position, across) = lever(w.shape.joints.angle[angle], arm);
                 let [rate, acceleration] = [w.shape.joints.rate[angle], w.shape.joints.acceleration[angle]];
@@ -298,35 +252,28 @@ impl MeshJoints {
                 continue;
             };
             let force = Planar::new(r[x], r[z]);
-            let [cos, sin] = tie.turn;
-            let back = turned([cos, -sin], force);
+            let back = force.turned_back(tie.turn);
             r[to_x] += back.x;
             r[to_z] += back.z;
             if let Some((angle, arm)) = tie.arm {
                 let (_, across) = lever(w.shape.joints.angle[angle], arm);
                 r[own.moment(angle)] += force.dot(across);
             }
-            self.follow(system, y, tie.node, w, r);
         }
-        for &(_, node, axis) in &self.driven {
-            let line = &lines[axis];
-            let u = line.u.start + node - line.free.start;
-            r[u] = y[u] - w.motion.u[node][axis];
-            if let Some(v) = &line.v {
-                let v = v.start + node - line.free.start;
-                r[v] = y[v] - w.motion.v[node][axis];
+        // the first of relative angles moves all
+        for (number, angle) in self.angles.iter().enumerate() {
+            if let Some(first) = angle.relative_to {
+                let own_moment = r[own.moment(number)];
+                r[own.moment(first)] += own_moment;
             }
         }
-    }
-
-    /// Unknowns of a node that follows: they equal its motion.
-    fn follow<T: Scalar>(&self, system: &System, y: &[T], node: usize, w: &Workspace<T>, r: &mut [T]) {
-        for (axis, line) in system.layout.lines.iter().enumerate() {
-            let u = line.u.start + node - line.free.start;
-            r[u] = y[u] - w.motion.u[node][axis];
+        // unknowns of led nodes equal the motion that they follow
+        for (node, axis) in self.led() {
+            let line = &lines[axis];
+            let at = node - line.free.start;
+            r[line.u.start + at] = y[line.u.start + at] - w.motion.u[node][axis];
             if let Some(v) = &line.v {
-                let v = v.start + node - line.free.start;
-                r[v] = y[v] - w.motion.v[node][axis];
+                r[v.start + at] = y[v.start + at] - w.motion.v[node][axis];
             }
         }
     }
@@ -366,14 +313,6 @@ impl MeshJoints {
 /// `R(φ) a` and `R'(φ) a`.
 #[inline]
 fn lever<T: Scalar>(angle: T, arm: Planar<f64>) -> (Planar<T>, Planar<T>) {
-    let (sin, cos) = angle.sin_cos();
-    let position = Planar::new(cos * arm.x + sin * arm.z, cos * arm.z - sin * arm.x);
+    let position = Planar::constant(arm).turned(Planar::tangent(angle));
     (position, Planar::new(position.z, -position.x))
-}
-
-/// Arm from the first end of a joint to another one, along the axes of its beam [m]; none if both are at one place.
-fn arm(structure: &Structure, mesh: &BeamMesh, first: usize, end: usize) -> Option<Planar<f64>> {
-    let apart = structure.place_of(end) - structure.place_of(first);
-    let near = apart.squared().sqrt() <= NEAR * mesh.shortest;
-    (!near).then(|| structure.beams[end / 2].piece.own(apart))
 }

@@ -1,20 +1,21 @@
 //! Elastic joints of a structure, on a mesh.
 
-use super::joints::turned;
-use super::{System, Workspace};
 use crate::case::schema::ElasticJoint;
+use crate::discrete::{System, Workspace};
 use crate::model::structure::elastic_forces;
 use crate::numerics::{Planar, Scalar};
 
 /// An elastic joint of two nodes, [E106].
 #[derive(Clone, Debug)]
 pub struct MeshedElasticJoint {
+    /// Number of its joint.
+    pub joint: usize,
     /// Nodes of both places.
     pub nodes: [usize; 2],
     /// Numbers of their angles.
     pub angles: [usize; 2],
-    /// `(cos, sin)` of the angle from the axes of the first beam to those of the second.
-    pub turn: [f64; 2],
+    /// `(sin, cos)` of the angle from the axes of the first beam to those of the second.
+    pub turn: Planar<f64>,
     /// `X_2 - X_1` along the axes of the first beam [m].
     pub apart: Planar<f64>,
     /// Stiffness and damping.
@@ -35,11 +36,10 @@ impl MeshedElasticJoint {
     fn stretched<T: Scalar>(&self, w: &Workspace<T>) -> Stretched<T> {
         let [first, other] = self.nodes;
         let [angles, rates] = [&w.shape.joints.angle, &w.shape.joints.rate].map(|of| self.angles.map(|k| of[k]));
-        let (sin, cos) = angles[0].sin_cos();
-        let back = |v: Planar<T>| Planar::new(v.x * cos - v.z * sin, v.z * cos + v.x * sin);
+        let direction = Planar::tangent(angles[0]);
         let apart = Planar::constant(self.apart);
-        let between = back(apart + turned(self.turn, w.motion.u[other]) - w.motion.u[first]);
-        let moving = back(turned(self.turn, w.motion.v[other]) - w.motion.v[first])
+        let between = (apart + w.motion.u[other].turned(self.turn) - w.motion.u[first]).turned_back(direction);
+        let moving = (w.motion.v[other].turned(self.turn) - w.motion.v[first]).turned_back(direction)
             + Planar::new(-between.z, between.x).times(rates[0]);
         let d = between - apart;
         Stretched {
@@ -53,11 +53,9 @@ impl MeshedElasticJoint {
     pub fn rows<T: Scalar>(&self, system: &System, w: &Workspace<T>, r: &mut [T]) {
         let Stretched { between, by, rates } = self.stretched(w);
         let [x, z, moment] = elastic_forces(&self.law, by, rates);
-        let (sin, cos) = w.shape.joints.angle[self.angles[0]].sin_cos();
         // on the first beam, along its axes
-        let force = Planar::new(x * cos + z * sin, z * cos - x * sin);
-        let [cos, sin] = self.turn;
-        let on_other = turned([cos, -sin], force);
+        let force = Planar::new(x, z).turned(Planar::tangent(w.shape.joints.angle[self.angles[0]]));
+        let on_other = force.turned_back(self.turn);
         let lines = &system.layout.lines;
         for (axis, line) in lines.iter().enumerate() {
             if let [Some(first), Some(other)] = self.nodes.map(|node| line.momentum(node)) {
@@ -74,6 +72,12 @@ impl MeshedElasticJoint {
     pub fn energy(&self, w: &Workspace<f64>) -> f64 {
         let by = self.stretched(w).by;
         0.5 * dot(by, elastic_forces(&self.law, by, [0.0; 3]))
+    }
+
+    /// Power that it takes [W].
+    pub fn power(&self, w: &Workspace<f64>) -> f64 {
+        let Stretched { by, rates, .. } = self.stretched(w);
+        dot(rates, elastic_forces(&self.law, by, rates))
     }
 
     /// Dissipated power [W].
