@@ -5,7 +5,7 @@ import subprocess
 import sys
 import time
 
-from measures import OPERATIONS, groups, measure_large, measure_prices, measure_program, measure_rods, measure_runs
+from measures import OPERATIONS, groups, measure_ensemble, measure_large, measure_prices, measure_program, measure_rods, measure_runs
 from page import draw, tables, write_page
 from workers import BUILT, PEERS, PYTHON, ROOT, SCENES, error, peers, run, workers
 
@@ -61,7 +61,7 @@ def main(arguments):
         results = json.loads(RESULTS.read_text())
         draw(results)
         return write_page(results)
-    parts = ["runs", "rods", "prices", "program", "large"]
+    parts = ["runs", "rods", "prices", "program", "ensemble", "large"]
     if "--only" in arguments:
         parts = arguments[arguments.index("--only") + 1].split(",")
     begin = time.monotonic()
@@ -70,7 +70,7 @@ def main(arguments):
     results = json.loads(RESULTS.read_text()) if "--only" in arguments and RESULTS.exists() else {}
     measure = {
         "runs": lambda: measure_runs(all, python), "rods": lambda: measure_rods(all) if python else {}, "prices": measure_prices,
-        "program": measure_program, "large": measure_large,
+        "program": measure_program, "ensemble": measure_ensemble, "large": measure_large,
     }
     for part in parts:
         results[part] = measure[part]()

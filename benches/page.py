@@ -63,8 +63,9 @@ def held(results):
             add(f"{REQUIRED[what]:.0f} times the best of {what}, `{scene}`", texts, least >= REQUIRED[what])
     for row in results.get("rods", {}).get("ratios", []):
         add(*row)
-    for row in results.get("program", {}).get("held", []):
-        add(*row)
+    for part in ("program", "ensemble"):
+        for row in results.get(part, {}).get("held", []):
+            add(*row)
     for row in results.get("large", {}).get("held", []):
         add(*row)
     return aligned(rows) if len(rows) > 1 else ""
@@ -74,7 +75,7 @@ def tables(results):
     out = tables_of_runs(results.get("runs", {}))
     rods, prices, large = (results.get(part, {}) for part in ("rods", "prices", "large"))
     for name, rows in (
-        ("rods", rods.get("rows")), ("program", results.get("program", {}).get("rows")), ("prices", prices.get("rows")),
+        ("rods", rods.get("rows")), ("program", results.get("program", {}).get("rows")), ("ensemble", results.get("ensemble", {}).get("rows")), ("prices", prices.get("rows")),
         ("instructions", prices.get("counted")), ("floor", large.get("floor")), ("scale", large.get("scale")),
         ("exponents", large.get("exponents")),
     ):
