@@ -173,6 +173,15 @@ impl MeshedAttachment {
         a + b
     }
 
+    /// Power of its rotational spring on the beam [W].
+    pub fn turning_power(&self, system: &System, now: &TimeData, w: &Workspace<f64>) -> f64 {
+        if self.turning_stiffness == 0.0 {
+            return 0.0;
+        }
+        let rates = self.cells.map(|(cell, weight)| w.shape.angle_rate[cell] * weight);
+        -self.turning_stiffness * self.angle(system, now, w) * (rates[0] + rates[1])
+    }
+
     /// Energy of the springs [J].
     pub fn energy(&self, system: &System, now: &TimeData, w: &Workspace<f64>) -> f64 {
         let (u, angle) = (self.between(&w.motion.u), self.angle(system, now, w));

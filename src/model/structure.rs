@@ -244,12 +244,16 @@ fn add_loads(case: &Case, piece: &Piece, model: &mut Model) {
 
 /// Parts of a load along the axes of a beam.
 fn turned(load: DistributedLoad, piece: &Piece) -> Vec<DistributedLoad> {
-    let direction = match load.kind {
-        LoadKind::ForceX => Planar { x: 1.0, z: 0.0 },
-        LoadKind::ForceZ => Planar { x: 0.0, z: 1.0 },
+    let along = match load.kind {
+        LoadKind::ForceX | LoadKind::MomentX => Planar { x: 1.0, z: 0.0 },
+        LoadKind::ForceZ | LoadKind::MomentZ => Planar { x: 0.0, z: 1.0 },
         _ => return vec![load],
     };
-    let own = piece.own(direction);
+    let kinds = match load.kind {
+        LoadKind::ForceX | LoadKind::ForceZ => [LoadKind::ForceX, LoadKind::ForceZ],
+        _ => [LoadKind::MomentX, LoadKind::MomentZ],
+    };
+    let own = piece.own(along);
     let part = |(kind, share): (LoadKind, f64)| DistributedLoad {
         kind,
         factor: load.factor * share,
@@ -260,8 +264,8 @@ fn turned(load: DistributedLoad, piece: &Piece) -> Vec<DistributedLoad> {
         },
         ..load.clone()
     };
-    let parts = [(LoadKind::ForceX, own.x), (LoadKind::ForceZ, own.z)];
-    parts.into_iter().filter(|(_, share)| *share != 0.0).map(part).collect()
+    let parts = kinds.into_iter().zip([own.x, own.z]);
+    parts.filter(|(_, share)| *share != 0.0).map(part).collect()
 }
 
 /// A load along the axes of the case, along those of a beam.
@@ -283,6 +287,8 @@ fn along_own_axes(load: &Load, piece: &Piece) -> Vec<Load> {
     match load {
         Load::ForceXNM(written) => both(parts(1.0, 0.0, written), Load::ForceXNM, Load::ForceZNM),
         Load::ForceZNM(written) => both(parts(0.0, 1.0, written), Load::ForceXNM, Load::ForceZNM),
+        Load::MomentXN(written) => both(parts(1.0, 0.0, written), Load::MomentXN, Load::MomentZN),
+        Load::MomentZN(written) => both(parts(0.0, 1.0, written), Load::MomentXN, Load::MomentZN),
         Load::BodyXMS2(written) => both(parts(1.0, 0.0, written), Load::BodyXMS2, Load::BodyZMS2),
         Load::BodyZMS2(written) => both(parts(0.0, 1.0, written), Load::BodyXMS2, Load::BodyZMS2),
         Load::Gravity { x_m_s2, z_m_s2 } => {

@@ -1,5 +1,8 @@
 //! What cannot be left out is refused, with its place, a reason and what to do; what has no meaning is off anyhow.
 
+use std::path::Path;
+
+use slcbeam::case;
 use slcbeam::case::schema::Effect;
 use slcbeam::model::{EffectSet, Model};
 
@@ -139,4 +142,38 @@ fn what_has_no_meaning_is_off_whatever_is_asked() {
     assert!(
         !dry.has(Effect::Fluid) && !dry.has(Effect::Flow) && !dry.has(Effect::MomentToArea) && dry.refusals.is_empty()
     );
+}
+
+/// The rotation of sections with shear has no rates of its own without rotary inertia.
+#[test]
+fn what_needs_the_rotation_of_sections_keeps_its_inertia() {
+    let off = r#"/effects={"shear":"on","rotary_inertia":"off"}"#;
+    let stiff = "/beam/shear_stiffness_n=300";
+    let at = "/effects/rotary_inertia";
+    let damped = |bending: &'static str| {
+        [
+            off,
+            stiff,
+            "/attachments=[]",
+            "/beam/damping/axial_time_s=1e-3",
+            bending,
+        ]
+    };
+    refused(
+        &damped("/beam/damping/bending_time_s=0"),
+        at,
+        "axial_time_s without bending_time_s",
+    );
+    assert!(
+        effects(&damped("/beam/damping/bending_time_s=1e-3"))
+            .refusals
+            .is_empty()
+    );
+    let structure = r#"{"name": "two", "beam": {"length_m": 0.1, "height_m": 0.01, "width_m": 0.02, "young_modulus_pa": 1e6,
+        "density_kg_m3": 1000, "shear_stiffness_n": 60}, "beams": [{"name": "a", "ends": {"root": "clamped"},
+        "attachments": [{"at": 0.5, "rotary_inertia_kg_m2": 1e-6}]}], "effects": {"shear": "on", "rotary_inertia": "off"},
+        "time": {"end_s": 0.1}}"#;
+    let case = case::parse(structure, Path::new("two.json"), Path::new(""), &[]).unwrap();
+    let refusals = Model::new(&case).unwrap().effects.refusals;
+    assert!(refusals[0].what.contains("/beams/0/attachments/0"), "{refusals:?}");
 }

@@ -9,6 +9,10 @@ use slcbeam::case;
 use slcbeam::run::dynamics;
 use slcbeam::run::record::Memory;
 
+use crate::balances::close;
+use crate::plans::{beam, held, joint, section, structure};
+use crate::scene::finished;
+
 fn shipped(name: &str) -> Value {
     let text = std::fs::read_to_string(format!("cases/{name}.json")).unwrap();
     let mut case: Value = serde_json::from_str(&text).unwrap();
@@ -85,10 +89,99 @@ fn ledgers_of_beams_close() {
     for joint in 1..3 {
         assert_eq!([taken(&walker, joint), taken(&four_bar, joint)], [0.0; 2]);
     }
+    closed("four-bar", 0.2, |case| {
+        case["beams"][1]["attachments"] = json!([
+            {"at": 0.4, "stiffness_rotation_n_m_rad": 0.05, "stiffness_x_n_m": 20, "damping_z_n_s_m": 0.1},
+            {"at": 0.7, "mass_kg": 0.01, "offset_across_m": 0.02, "offset_along_m": 0.01, "rotary_inertia_kg_m2": 1e-6}]);
+    });
     closed("branched-actuator", 0.3, |case| {
         case["beam"]["damping"] = json!({"drag_n_s_m2": 5});
         case["beam"]["viscoelasticity"] = json!({"prony": [{"modulus_ratio": 0.3, "time_s": 0.05}]});
     });
+}
+
+/// Rigid places apart, without inertia: reactions contain no accelerations.
+#[test]
+fn ledgers_without_inertia_close() {
+    let mut case = structure(
+        section([1e3, 0.02, 0.1]),
+        vec![
+            held(beam("a", 0.1, 0.0, 6), "root", json!("clamped")),
+            beam("b", 0.1, 23.0, 6),
+        ],
+        vec![joint("rigid", &["a.tip", "b.root"])],
+    );
+    case["beam"]["damping"] = json!({"bending_time_s": 0.01, "axial_time_s": 0.01});
+    case["beams"][1]["origin_m"] = json!([0.03, 0.11]);
+    case["loads"] = json!([{"gravity": {"x_m_s2": -2, "z_m_s2": -1}}]);
+    case["effects"]["solid_inertia"] = json!("off");
+    case["solver"]["rtol"] = json!(1e-6);
+    case["time"] = json!({"end_s": 0.3});
+    let memory = run(&case);
+    for beam in ["a", "b"] {
+        let [open, largest] = open(&memory, beam);
+        println!("without inertia, {beam}: {open:.1e} of {largest:.1e} J");
+        assert!(
+            largest > 1e-5 && open < 1e-3 * largest,
+            "{beam}: {open:.1e} of {largest:.1e} J"
+        );
+    }
+}
+
+/// An elastic joint and a slider that damp displacements between beams without viscosity: the massless angle is neither given by its balance
+/// nor by its rate. Goal: balances close to 1e-6 at rtol 1e-8, and a tiny body at the joint changes the motion by less than 1e-4.
+#[test]
+fn joints_that_damp_displacements_are_stable() {
+    let elastic = json!({"elastic": {
+        "stiffness": [[30.0, 2.0, 0.02], [2.0, 50.0, 0.0], [0.02, 0.0, 0.005]],
+        "damping": [[0.3, 0, 0], [0, 0.5, 0], [0, 0, 5e-4]]}});
+    let slider =
+        json!({"slider": {"stiffness_n_m": 50, "damping_n_s_m": 0.5, "angle_rad": 0.4, "wall_stiffness_n_m": 5000}});
+    for kind in [elastic, slider] {
+        let tips = [0.0, 1e-11].map(|inertia| {
+            let mut case = structure(
+                section([200.0, 1.67e-3, 0.2]),
+                vec![
+                    held(beam("a", 0.1, 0.0, 8), "root", json!("clamped")),
+                    beam("b", 0.1, 34.0, 8),
+                ],
+                vec![json!({"at": ["a.tip", "b.root"], "kind": kind, "rotary_inertia_kg_m2": inertia})],
+            );
+            case["loads"] = json!([{"gravity": {"x_m_s2": -9.81}}]);
+            case["solver"]["rtol"] = json!(1e-8);
+            case["time"] = json!({"end_s": 0.2});
+            let (memory, summary) = finished(&case);
+            close("damped displacements", &summary, 1e-6);
+            memory.column("b.tip_u1").unwrap()
+        });
+        let off = tips[0]
+            .iter()
+            .zip(&tips[1])
+            .map(|(a, b)| (a - b).abs())
+            .fold(0.0, f64::max);
+        println!("{kind}: moves by {off:.1e} m with a body");
+        assert!(off < 1e-5, "{kind}: {off:.1e} m");
+    }
+}
+
+/// Hinges between a beam that bends viscously and one that does not start, in both orders.
+#[test]
+fn hinges_of_unlike_beams_start() {
+    for viscous in [0, 1] {
+        let mut case = structure(
+            section([200.0, 1.67e-3, 0.2]),
+            vec![
+                held(beam("a", 0.1, 0.0, 4), "root", json!("clamped")),
+                beam("b", 0.1, 34.0, 4),
+            ],
+            vec![json!({"at": ["a.tip", "b.root"], "kind": {"hinge": {"stiffness_n_m_rad": 0.01}}})],
+        );
+        case["beams"][viscous]["beam"] = json!({"damping": {"bending_time_s": 1e-3}});
+        case["loads"] = json!([{"gravity": {"x_m_s2": -9.81}}]);
+        case["solver"]["rtol"] = json!(1e-8);
+        case["time"] = json!({"end_s": 0.1});
+        close("unlike beams", &finished(&case).1, 1e-6);
+    }
 }
 
 /// Work that the joints take from the beams is in their springs, or lost in their dampers.

@@ -112,7 +112,7 @@ pub enum JointKind {
     Hinge(Hinge),
     /// Springs in all directions between the first beam and each further one.
     Elastic(ElasticJoint),
-    /// Each further beam slides along a slot of the first one, without turning in it.
+    /// Each further beam slides along a slot of the first one, and turns in it against `turning_stiffness_n_m_rad`.
     Slider(Slider),
 }
 
@@ -126,6 +126,14 @@ pub struct ElasticJoint {
     /// Damping matrix, the same per velocity; absent: none.
     #[serde(default, skip_serializing_if = "is_undamped")]
     pub damping: [[f64; 3]; 3],
+}
+
+impl ElasticJoint {
+    /// True if displacements are damped, not the rotation alone.
+    pub fn damps_motion(&self) -> bool {
+        let [x, z, _] = self.damping;
+        x != [0.0; 3] || z != [0.0; 3]
+    }
 }
 
 /// True for a joint without damping, the default that a case may omit.

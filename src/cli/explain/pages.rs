@@ -63,7 +63,10 @@ pub fn find(name: &str) -> Vec<Explanation> {
     if found.is_empty() {
         // a column of a table in the form of a key, with its unit at the end
         let ends = ["_pa", "_j", "_w", "_m", "_m3", "_m^3", "_N", "_N m", "_rad"];
-        let mut without = ends.iter().filter_map(|end| name.strip_suffix(end)).map(exactly);
+        // of a beam of a structure: `left.work_j`
+        let own = name.split_once('.').map_or(name, |(_, own)| own);
+        let without = ends.iter().filter_map(|end| own.strip_suffix(end));
+        let mut without = without.chain(std::iter::once(own)).map(exactly);
         found = without.find(|all| !all.is_empty()).unwrap_or_default();
     }
     found.extend(rows(GLOSSARY).flat_map(|row| of_glossary(&row, name)));

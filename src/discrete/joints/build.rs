@@ -30,7 +30,6 @@ impl MeshJoints {
             }
         }
         let inertia = model.effects.has(Effect::SolidInertia);
-        let damped = model.section.bends_viscously();
         for (number, joint) in structure.joints.iter().enumerate() {
             let Some(first) = joint.ends().next() else { continue };
             joint.ends().for_each(|end| all.joined[end] = true);
@@ -39,18 +38,31 @@ impl MeshJoints {
                 .filter(|hinge| hinge.stiffness_n_m_rad > 0.0 || hinge.damping_n_m_s_rad > 0.0 || hinge.stop.is_some());
             let elastic = joint.elastic.is_some();
             let losing = resists.is_some_and(|hinge| hinge.damping_n_m_s_rad > 0.0)
-                || joint.elastic.is_some_and(|law| law.damping != [[0.0; 3]; 3]);
+                || joint.elastic.is_some_and(|law| law.damping[2][2] > 0.0);
+            let viscous = |group: &[usize]| {
+                let mut sections = group.iter().map(|end| &structure.beams[end / 2].model.section);
+                sections.any(|section| section.bends_viscously())
+            };
+            let slides = joint.elastic.is_some_and(|law| law.damps_motion());
+            let inertia_of_joint = match joint.groups.first() {
+                Some(own) if slides && joint.inertia == 0.0 && !viscous(own) => half_cell(structure, mesh, first),
+                _ => joint.inertia,
+            };
             let arms = |group: &[usize]| group.iter().any(|end| arm(structure, mesh, first, *end).is_some());
-            let others_move = inertia && !elastic && joint.groups.iter().skip(1).any(|group| arms(group));
+            let inertias = (0..joint.groups.len()).map(|k| if k == 0 { inertia_of_joint } else { 0.0 });
+            let moving = joint.groups.iter().zip(inertias.clone());
+            let moving: Vec<bool> = moving
+                .map(|(group, own)| inertia && (own > 0.0 || (!elastic && arms(group))))
+                .collect();
+            // otherwise the damper depends on differences of unknown rates alone
+            let regular = moving.contains(&true) || joint.groups.iter().any(|group| viscous(group));
             let mut numbers: Vec<usize> = vec![];
-            for (k, group) in joint.groups.iter().enumerate() {
-                let inertia_of_group = if k == 0 { joint.inertia } else { 0.0 };
-                let moves = inertia && (inertia_of_group > 0.0 || (!elastic && arms(group)));
+            for ((group, inertia_of_group), moves) in joint.groups.iter().zip(inertias).zip(moving) {
                 if group.len() < 2 && resists.is_none() && !elastic && inertia_of_group == 0.0 {
                     continue; // a free end
                 }
                 let angle = all.angles.len();
-                let relative_to = numbers.first().copied().filter(|_| !moves);
+                let relative_to = numbers.first().copied().filter(|_| losing && !regular);
                 numbers.push(angle);
                 for end in group {
                     all.of_ends[*end] = Some(angle);
@@ -61,7 +73,7 @@ impl MeshJoints {
                     ends: group.iter().map(|end| (ends[*end].node, -ends[*end].outward)).collect(),
                     moves,
                     relative_to,
-                    damped: damped || (losing && (relative_to.is_some() || others_move)),
+                    damped: viscous(group) || (losing && (regular || relative_to.is_some())),
                 });
             }
             if let (Some(law), [first, others @ ..]) = (resists, &numbers[..]) {
@@ -106,6 +118,14 @@ impl MeshJoints {
         }
         all
     }
+}
+
+/// Rotary inertia of the half cell beside an end [kg m^2]. It turns with an elastic joint that damps displacements: their rate depends on
+/// the turning of the joint by the distance of both places, so little that a massless angle would be neither given by its balance nor by
+/// its rate.
+fn half_cell(structure: &Structure, mesh: &BeamMesh, end: usize) -> f64 {
+    let (beam, place) = (&structure.beams[end / 2], mesh.beams[end / 2].ends()[end % 2]);
+    beam.model.section.mass_per_length * mesh.lengths[place.cell].powi(3) / 24.0
 }
 
 /// Arm from the first end of a joint to another one, along the axes of its beam [m]; none if both are at one place.

@@ -55,7 +55,13 @@ pub fn put(
 ) {
     let mut set = |rate: BeamRate, value: f64| out[index(system, beam, rate)] = value;
     let of = |rate: EnergyRate| rates[rate as usize];
-    set(BeamRate::Work, of(EnergyRate::Loads) + of(EnergyRate::Ends) + held);
+    let nodes = &system.mesh.beams[beam].nodes;
+    let turning = system.attached.iter().filter(|attached| nodes.contains(&attached.node));
+    let turning: f64 = turning.map(|attached| attached.turning_power(system, now, w)).sum();
+    set(
+        BeamRate::Work,
+        of(EnergyRate::Loads) + of(EnergyRate::Ends) + held + turning,
+    );
     let ends = [2 * beam, 2 * beam + 1];
     set(
         BeamRate::Joints,

@@ -9,7 +9,7 @@ use crate::discrete::residual::bending::relative_stiffness;
 use crate::discrete::residual::momentum::outer_forces;
 use crate::discrete::residual::solid::{couple, node_stretch};
 use crate::discrete::residual::{eccentric, fourth_order, relaxation};
-use crate::discrete::{System, TimeData, Workspace, attached};
+use crate::discrete::{System, TimeData, Workspace, attached, bodies};
 use crate::model::Kinematics;
 use crate::numerics::Planar;
 
@@ -24,7 +24,7 @@ pub fn flows(
     for (number, beam) in system.mesh.beams.iter().enumerate() {
         let mut rates = Rates::default();
         let held = nodes(system, now, &pressure_rate, w, beam.nodes.clone(), &mut rates);
-        bodies(system, now, w, &beam.nodes, &mut rates);
+        turning_bodies(system, now, w, &beam.nodes, &mut rates);
         let lost = relaxation::energy_and_loss(system, now, w, beam)[1];
         add(&mut rates, EnergyRate::Damping, lost);
         cells(system, now, w, beam.cells.clone(), &mut rates);
@@ -58,6 +58,14 @@ fn nodes(
             }
             f += force;
         });
+        if system.model.structure.is_some() {
+            // forces of the inertia of bodies, whose energy is the beam's
+            bodies::forces(system, now, w, i, &mut |flow, force: Planar<f64>| {
+                if flow.is_none() {
+                    stored -= force.dot(v);
+                }
+            });
+        }
         let inertia = system.masses[i];
         if l.inertia && l.lines[1].v.is_none() {
             add(
@@ -92,7 +100,7 @@ fn nodes(
 }
 
 /// Work and torque of bodies that rotate with the beam of these nodes; their own momentum is not an external force.
-fn bodies(system: &System, now: &TimeData, w: &Workspace<f64>, nodes: &Range<usize>, out: &mut Rates) {
+fn turning_bodies(system: &System, now: &TimeData, w: &Workspace<f64>, nodes: &Range<usize>, out: &mut Rates) {
     for body in system.bodies.iter().filter(|body| nodes.contains(&body.node)) {
         add(out, EnergyRate::Loads, body.power_of_couple(system, now, w));
         let (force, torque) = body.outside(system, now, w);
@@ -123,7 +131,8 @@ fn missing(system: &System, w: &Workspace<f64>, i: usize, force: Planar<f64>) ->
     let none = Planar::default();
     let right = w.forces.section.get(i).copied().unwrap_or(none);
     let left = if i > 0 { w.forces.section[i - 1] } else { none };
-    w.motion.a[i] * system.masses[i] - force - right + left
+    let inertia = if system.layout.inertia { system.masses[i] } else { 0.0 };
+    w.motion.a[i] * inertia - force - right + left
 }
 
 /// Force of the support or drive on an end with given motion [N].

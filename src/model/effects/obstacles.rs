@@ -166,21 +166,45 @@ pub fn solid_inertia(case: &Case, moves: [bool; 2]) -> Option<Obstacle> {
         );
     }
     let damped = |a: &Attachment| a.damping_x_n_s_m > 0.0 || a.damping_z_n_s_m > 0.0;
-    let k = case.attachments.iter().position(damped)?;
+    let at = first_attachment(case, damped)?;
     obstacle(
-        format!("/attachments/{k} has a dashpot, which has no effect without inertia"),
+        format!("{at} has a dashpot, which has no effect without inertia"),
         "remove it, or leave solid_inertia on",
     )
 }
 
-/// Obstacle: an attachment that resists the rotation of shearing sections, which have rates only with rotary inertia.
+/// Pointer of the first attachment with a property, of the case or of its beams.
+fn first_attachment(case: &Case, of: impl Fn(&Attachment) -> bool) -> Option<String> {
+    let beams = case.beams.iter().enumerate();
+    let beams = beams.map(|(k, beam)| (format!("/beams/{k}"), &beam.attachments));
+    let mut all = std::iter::once((String::new(), &case.attachments)).chain(beams);
+    all.find_map(|(owner, attachments)| {
+        let k = attachments.iter().position(&of)?;
+        Some(format!("{owner}/attachments/{k}"))
+    })
+}
+
+/// Obstacle: an attachment that resists the rotation of shearing sections, which have rates only with rotary inertia; or axial damping
+/// alone, whose force depends on this rotation, weakly in a straight beam.
 pub fn rotary_inertia(case: &Case, sheared: bool) -> Option<Obstacle> {
+    if !sheared {
+        return None;
+    }
     let turned = |a: &Attachment| a.is_eccentric() || a.rotary_inertia_kg_m2 > 0.0;
-    let k = case.attachments.iter().position(turned).filter(|_| sheared)?;
-    obstacle(
-        format!("/attachments/{k} resists the rotation of sections with shear"),
-        "leave rotary_inertia on, or switch shear off",
-    )
+    if let Some(at) = first_attachment(case, turned) {
+        return obstacle(
+            format!("{at} resists the rotation of sections with shear"),
+            "leave rotary_inertia on, or switch shear off",
+        );
+    }
+    let alone = |[bending, axial]: &[f64; 2]| *axial > 0.0 && *bending == 0.0;
+    if case.damping_times().iter().any(alone) {
+        return obstacle(
+            "axial_time_s without bending_time_s acts on the rotation of sections with shear",
+            "leave rotary_inertia on, switch shear off, or give bending_time_s",
+        );
+    }
+    None
 }
 
 /// Obstacle: axial motion that the remaining equations do not determine, or that an attachment, a contact or ambient fluid

@@ -28,7 +28,7 @@ pub fn resolve(option: &str, text: &str, what: &AnalysisKind, names: &[String]) 
     if let Some(found) = asked.find(|asked| names.contains(asked)) {
         return Ok(found);
     }
-    let quantity = |name: &String| name.split('.').next().unwrap_or_default().to_owned();
+    let quantity = |name: &String| name.rsplit_once('.').map_or(name.as_str(), |(own, _)| own).to_owned();
     let mut quantities: Vec<String> = names.iter().map(quantity).collect();
     quantities.dedup();
     let all = names.iter().chain(&quantities).map(String::as_str);
