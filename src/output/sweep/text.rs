@@ -4,6 +4,7 @@ use std::fmt::Write as _;
 
 use super::JournalSummary;
 use crate::error::Result;
+use crate::error::numbers::quantity;
 use crate::output::columns::bracketed;
 use crate::output::numbers::{count, counted};
 use crate::results::sweep::Sweep;
@@ -15,7 +16,7 @@ use crate::study::sweep::designs::pairs;
 /// Largest number of designs without a full result that are listed.
 const LISTED: usize = 5;
 
-/// Number of designs by status, and the first that did not finish.
+/// Number of designs by status, what one costs, and the first that did not finish.
 ///
 /// # Errors
 /// The journal cannot be read.
@@ -25,15 +26,10 @@ pub fn describe(sweep: &Sweep, survey: &JournalSummary) -> Result<String> {
     let shard = plan
         .shard
         .map_or(String::new(), |shard| format!(", shard {}", shard.describe()));
-    let mut text = format!(
-        "{} of {}{shard} by {}: {kinds}\n",
-        several(rows),
-        plan.title(),
-        plan.command.word()
-    );
     let pointers = plan.pointers();
-    let (mut first, mut short) = (vec![], 0);
+    let (mut first, mut short, mut spent) = (vec![], 0, 0.0);
     survey.each(|row| {
+        spent += row.wall_s;
         short += usize::from(row.found.figure(ACCURACY) == Some(0.0));
         if row.found.status != Status::Finished && first.len() < LISTED {
             let values = pairs(&pointers, &row.values);
@@ -47,6 +43,16 @@ pub fn describe(sweep: &Sweep, survey: &JournalSummary) -> Result<String> {
         }
         Ok(())
     })?;
+    let each = match rows {
+        0 => String::new(),
+        rows => format!("; {} each", quantity(spent / rows as f64, "s", 2)),
+    };
+    let mut text = format!(
+        "{} of {}{shard} by {}: {kinds}{each}\n",
+        several(rows),
+        plan.title(),
+        plan.command.word()
+    );
     text += &first.concat();
     if short > 0 {
         let verb = if short == 1 { "does" } else { "do" };

@@ -312,9 +312,10 @@ fn find_each(columns: &[HistoryColumn], names: &[String]) -> Result<Vec<usize>> 
 
 /// Index of an output by its name, with or without its unit.
 fn find(columns: &[HistoryColumn], name: &str) -> Result<usize> {
-    let place = columns
-        .iter()
-        .position(|column| is_linear(column) && (column.name == name || column.key() == name));
+    let place = columns.iter().position(|column| {
+        let keys = [column.key(), probes::key(&column.name, column.unit)];
+        is_linear(column) && (column.name == name || keys.iter().any(|key| key == name))
+    });
     place.ok_or_else(|| {
         let mut keys: Vec<String> = columns
             .iter()
