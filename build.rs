@@ -1,4 +1,4 @@
-//! Finds SUNDIALS 6, KLU and METIS, declares to Rust what `sundials-sys` does not: KLU's and METIS' functions and the version query; and tells the
+//! Finds SUNDIALS 6 and KLU, declares to Rust what `sundials-sys` does not: KLU's functions and the version query; and tells the
 //! commit of the sources.
 
 use std::env;
@@ -6,8 +6,7 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 
 /// What brings everything the build needs.
-const HELP: &str =
-    "run scripts/test, or apt-get install libsundials-dev libsuitesparse-dev libmetis-dev libclang-dev pkg-config";
+const HELP: &str = "run scripts/test, or apt-get install libsundials-dev libsuitesparse-dev libclang-dev pkg-config";
 
 /// What the program is made of.
 const SOURCES: [&str; 4] = ["src", "build.rs", "Cargo.toml", "Cargo.lock"];
@@ -19,12 +18,7 @@ fn main() {
     if let Some(commit) = commit() {
         println!("cargo::rustc-env=SLCBEAM_COMMIT={commit}");
     }
-    for name in [
-        "SUNDIALS_INCLUDE_DIR",
-        "KLU_INCLUDE_DIR",
-        "KLU_LIBRARY_DIR",
-        "METIS_INCLUDE_DIR",
-    ] {
+    for name in ["SUNDIALS_INCLUDE_DIR", "KLU_INCLUDE_DIR", "KLU_LIBRARY_DIR"] {
         println!("cargo::rerun-if-env-changed={name}");
     }
     if let Err(what) = declare() {
@@ -60,8 +54,7 @@ fn declare() -> Result<(), String> {
         println!("cargo::rustc-link-search=native={dir}");
     }
     println!("cargo::rustc-link-lib=dylib=klu");
-    println!("cargo::rustc-link-lib=dylib=metis");
-    write(&[sundials, klu, metis()?])
+    write(&[sundials, klu])
 }
 
 /// Folders in which headers are looked for; `variable` names one more, to be tried first.
@@ -128,21 +121,6 @@ fn klu() -> Result<PathBuf, String> {
     Ok(folder)
 }
 
-/// Folder that holds `metis.h` of METIS 5.
-fn metis() -> Result<PathBuf, String> {
-    let here = |folder: &PathBuf| folder.join("metis.h").is_file();
-    let folder = folders("METIS_INCLUDE_DIR").into_iter().find(here);
-    let folder = folder.ok_or("METIS is missing: no metis.h")?;
-    match defined(&read(&folder.join("metis.h"))?, "METIS_VER_MAJOR") {
-        Some("5") => Ok(folder),
-        other => Err(format!(
-            "METIS 5 is needed, {} holds {}",
-            folder.display(),
-            other.unwrap_or("an unknown version")
-        )),
-    }
-}
-
 fn read(path: &Path) -> Result<String, String> {
     std::fs::read_to_string(path).map_err(|error| format!("cannot read {}: {error}", path.display()))
 }
@@ -161,14 +139,13 @@ fn defined<'t>(text: &'t str, name: &str) -> Option<&'t str> {
 fn write(folders: &[PathBuf]) -> Result<(), String> {
     let output = PathBuf::from(env::var("OUT_DIR").map_err(|_| "OUT_DIR is not set: not run by cargo")?);
     let builder = bindgen::Builder::default()
-        .header_contents("needed.h", "#include <klu.h>\n#include <metis.h>\n#include <sundials/sundials_version.h>\n")
+        .header_contents("needed.h", "#include <klu.h>\n#include <sundials/sundials_version.h>\n")
         .clang_args(folders.iter().map(|folder| format!("-I{}", folder.display())))
         .allowlist_function(
             "klu_(l_(defaults|analyze|refactor|rgrowth|rcond|condest|free_symbolic)|z?l_(factor|solve|free_numeric)|zl_tsolve)",
         )
-        .allowlist_function("SUNDIALSGetVersionNumber|METIS_(NodeND|SetDefaultOptions)")
-        .allowlist_type("moptions_et")
-        .allowlist_var("KLU_(OK|SINGULAR|OUT_OF_MEMORY|INVALID|TOO_LARGE)|SUITESPARSE_(MAIN|SUB|SUBSUB)_VERSION|METIS_NOPTIONS")
+        .allowlist_function("SUNDIALSGetVersionNumber")
+        .allowlist_var("KLU_(OK|SINGULAR|OUT_OF_MEMORY|INVALID|TOO_LARGE)|SUITESPARSE_(MAIN|SUB|SUBSUB)_VERSION")
         .generate_comments(false)
         .layout_tests(false);
     std::panic::set_hook(Box::new(|_| {}));
@@ -178,7 +155,7 @@ fn write(folders: &[PathBuf]) -> Result<(), String> {
         .map_err(|_| "libclang is missing".to_owned())?
         .map_err(|error| {
             format!(
-                "klu.h, metis.h or sundials_version.h cannot be read: {}",
+                "klu.h or sundials_version.h cannot be read: {}",
                 error.to_string().replace('\n', " ")
             )
         })?

@@ -18,7 +18,7 @@ pub struct ComplexKlu {
 unsafe impl Send for ComplexKlu {}
 
 impl ComplexKlu {
-    /// Analyzes a square pattern: block triangular form, AMD ordering or nested dissection, rows scaled by their largest entry.
+    /// Analyzes a square pattern: block triangular form, AMD ordering, rows scaled by their largest entry.
     pub fn new(pattern: &Pattern) -> Result<Self, KluError> {
         Ok(Self {
             analysis: Analysis::new(pattern)?,

@@ -6,7 +6,6 @@
 //! If it falls below [`Klu::smallest_growth`], the pivots are chosen anew.
 
 pub mod complex;
-mod dissection;
 mod rows;
 
 use std::ptr;
@@ -36,10 +35,6 @@ unsafe impl Send for Analysis {}
 // SAFETY: likewise.
 unsafe impl Send for Klu {}
 
-/// Estimated operations of a factorization per column, above which AMD's order gives way to nested dissection. Trees of tubes and random
-/// wirings are beyond it, beams with tubes beside them below.
-const MOST_OPERATIONS: f64 = 2e4;
-
 /// Pattern analyzed by KLU: checked, in block triangular form, ordered.
 struct Analysis {
     starts: Vec<i64>,
@@ -67,39 +62,19 @@ impl Analysis {
         unsafe { c::klu_l_defaults(&mut *common) };
         common.ordering = 0; // AMD: fills less than COLAMD where a few rows are dense
         common.scale = 2; // rows by their largest entry
-        let mut analysis = Self {
-            starts: pattern.starts.clone(),
-            rows: pattern.rows.clone(),
+        let (mut starts, mut rows) = (pattern.starts.clone(), pattern.rows.clone());
+        // SAFETY: the pattern has been checked above; the arrays are only read.
+        let symbolic = unsafe { c::klu_l_analyze(n as i64, starts.as_mut_ptr(), rows.as_mut_ptr(), &mut *common) };
+        let analysis = Self {
+            starts,
+            rows,
             common,
-            symbolic: ptr::null_mut(),
+            symbolic,
         };
-        analysis.order()?;
-        // SAFETY: not null after a successful analysis.
-        let operations = unsafe { (*analysis.symbolic).est_flops };
-        if operations > MOST_OPERATIONS * n as f64 {
-            analysis.free();
-            analysis.common.ordering = 3;
-            analysis.common.user_order = Some(dissection::order);
-            analysis.order()?;
-        }
-        Ok(analysis)
-    }
-
-    fn order(&mut self) -> Result<(), KluError> {
-        let n = self.columns() as i64;
-        // SAFETY: the pattern has been checked; the arrays are only read.
-        self.symbolic =
-            unsafe { c::klu_l_analyze(n, self.starts.as_mut_ptr(), self.rows.as_mut_ptr(), &mut *self.common) };
-        match self.symbolic.is_null() {
-            true => Err(self.fault()),
-            false => Ok(()),
-        }
-    }
-
-    fn free(&mut self) {
-        if !self.symbolic.is_null() {
-            // SAFETY: created by `klu_l_analyze`, freed once: KLU sets the pointer to null.
-            unsafe { c::klu_l_free_symbolic(&mut self.symbolic, &mut *self.common) };
+        if symbolic.is_null() {
+            Err(analysis.fault())
+        } else {
+            Ok(analysis)
         }
     }
 
@@ -126,7 +101,10 @@ impl Analysis {
 
 impl Drop for Analysis {
     fn drop(&mut self) {
-        self.free();
+        if !self.symbolic.is_null() {
+            // SAFETY: created by `klu_l_analyze`, freed once.
+            unsafe { c::klu_l_free_symbolic(&mut self.symbolic, &mut *self.common) };
+        }
     }
 }
 
@@ -149,7 +127,7 @@ pub struct Klu {
 }
 
 impl Klu {
-    /// Analyzes a square pattern: block triangular form, AMD ordering or nested dissection, rows scaled by their largest entry.
+    /// Analyzes a square pattern: block triangular form, AMD ordering, rows scaled by their largest entry.
     pub fn new(pattern: &Pattern) -> Result<Self, KluError> {
         Ok(Self {
             analysis: Analysis::new(pattern)?,

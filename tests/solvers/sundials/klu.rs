@@ -37,47 +37,6 @@ fn guard_sees_stale_pivots() {
     }
 }
 
-/// A line of small blocks with connections at random is ordered by nested dissection.
-///
-/// Goal: its solution to rounding, real and repeated; factors of less than 25 MB, where AMD's order takes 40.
-#[test]
-fn random_connections_are_dissected() {
-    const BLOCKS: usize = 600;
-    const SIZE: usize = 16;
-    let mut chance = Random(3);
-    let n = BLOCKS * SIZE;
-    let mut columns: Vec<Vec<usize>> = (0..n)
-        .map(|j| {
-            let block = j / SIZE;
-            let last = (block + 2).min(BLOCKS) * SIZE;
-            (block.saturating_sub(1) * SIZE..last).collect()
-        })
-        .collect();
-    for _ in 0..BLOCKS / 4 {
-        let (a, b) = (chance.below(n), chance.below(n));
-        columns[a].push(b);
-        columns[b].push(a);
-    }
-    let pattern = Pattern::from_columns(&columns);
-    let mut klu = Klu::new(&pattern).unwrap();
-    for _ in 0..2 {
-        let x: Vec<f64> = (0..n).map(|_| chance.between(-1.0, 1.0)).collect();
-        let (mut values, mut b) = (vec![0.0; pattern.entries()], vec![0.0; n]);
-        for (j, x) in x.iter().enumerate() {
-            for p in pattern.column(j) {
-                let row = pattern.rows[p] as usize;
-                values[p] = if row == j { 100.0 } else { chance.between(-1.0, 1.0) };
-                b[row] += values[p] * x;
-            }
-        }
-        klu.factor(&values).unwrap();
-        assert!(klu.solve(&mut b));
-        assert!(b.iter().zip(&x).all(|(b, x)| (b - x).abs() < 1e-13));
-    }
-    println!("{} bytes of factors", klu.bytes());
-    assert!(klu.bytes() < 25_000_000, "{}", klu.bytes());
-}
-
 /// Goal: an isolated row that becomes zero is detected by the guard; pivot growth misses it.
 #[test]
 fn a_block_of_one_row_that_vanishes_is_singular() {
