@@ -235,7 +235,7 @@ def measure_program():
 
 SMOOTH = "/ends/root/clamped/u3_m/sine/ramp_cycles=1"
 # scene, its changes, designs a second and core that must be reached
-ENSEMBLES = [("shaken-sealed", [], 250.0), ("wiring-2", [SMOOTH], 100.0)]
+ENSEMBLES = [("shaken-sealed", [], 250.0), ("wiring-2", [SMOOTH], 400.0)]
 
 
 def swept(scene, changes, designs, rtol):

@@ -4,16 +4,16 @@ use std::time::Instant;
 
 use serde_json::{Value, json};
 use slcbeam::integrate::AbsoluteTolerances;
-use slcbeam::onestep::{Method, OneStepOptions};
-use slcbeam::run::method::{Integrator, Options};
+use slcbeam::onestep::{OneStepOptions, TableauMethod};
+use slcbeam::run::method::{Integrator, IntegratorOptions};
 use slcbeam::sundials::IdaOptions;
 
 use crate::scene::{Bare, Ran, Scene};
 
 /// Options of a run as in the program, by the name of the method.
-pub fn options(scene: &Scene, name: &str, rtol: f64) -> Option<Options> {
+pub fn options(scene: &Scene, name: &str, rtol: f64) -> Option<IntegratorOptions> {
     let one_step = |method| {
-        Options::OneStep(OneStepOptions {
+        IntegratorOptions::OneStep(OneStepOptions {
             method,
             relative: rtol,
             absolute: AbsoluteTolerances::Same(rtol),
@@ -22,7 +22,7 @@ pub fn options(scene: &Scene, name: &str, rtol: f64) -> Option<Options> {
         })
     };
     Some(match name {
-        "ida2" => Options::Ida(IdaOptions {
+        "ida2" => IntegratorOptions::Ida(IdaOptions {
             relative: rtol,
             absolute: AbsoluteTolerances::Same(rtol),
             max_order: 2,
@@ -30,16 +30,16 @@ pub fn options(scene: &Scene, name: &str, rtol: f64) -> Option<Options> {
             nonlinear_coefficient: 0.033,
             ..IdaOptions::default()
         }),
-        "trbdf2" => one_step(Method::TrBdf2),
-        "esdirk34" => one_step(Method::Esdirk34),
-        "esdirk46" => one_step(Method::Esdirk46),
-        "esdirk57" => one_step(Method::Esdirk57),
+        "trbdf2" => one_step(TableauMethod::TrBdf2),
+        "esdirk34" => one_step(TableauMethod::Esdirk34),
+        "esdirk46" => one_step(TableauMethod::Esdirk46),
+        "esdirk57" => one_step(TableauMethod::Esdirk57),
         _ => return None,
     })
 }
 
 /// An integrator of a scene's equations at its start.
-pub fn integrator(scene: &Scene, dae: Bare, options: &Options) -> Result<Integrator<Bare>, String> {
+pub fn integrator(scene: &Scene, dae: Bare, options: &IntegratorOptions) -> Result<Integrator<Bare>, String> {
     Integrator::new(dae, 0.0, &scene.y, &scene.yp, options).map_err(|e| e.to_string())
 }
 
@@ -77,7 +77,7 @@ pub fn profile(scene: &Scene, name: &str, rtol: f64) -> Option<Value> {
 }
 
 /// Runs a scene; readings at the output times.
-pub fn follow(scene: &Scene, options: &Options) -> Result<Ran, String> {
+pub fn follow(scene: &Scene, options: &IntegratorOptions) -> Result<Ran, String> {
     let dae = scene.dae();
     let begin = Instant::now();
     let mut solver = integrator(scene, dae, options)?;

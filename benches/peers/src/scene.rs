@@ -86,7 +86,7 @@ impl Readings {
                     area: l.network.area.start + (place + 1) * fluid.cells_per_bladder - 1,
                     moment: last(&l.coupling.mean_moment),
                     force: last(&l.coupling.mean_force),
-                    law: wet.area,
+                    law: wet.area[0],
                 }
             });
         Self {
