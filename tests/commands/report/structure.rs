@@ -68,9 +68,16 @@ fn structures_are_shown_with_all_beams() {
         "/time/window_s=0.01",
     ];
     let sets = short.iter().flat_map(|set| ["--set", set]);
-    let gripper: Vec<&str> = ["run", "cases/gripper.json"].into_iter().chain(sets).collect();
+    let gripper: Vec<&str> = ["run", "cases/gripper.json"].into_iter().chain(sets.clone()).collect();
     let gripper = made(&dir.path().join("gripper"), &gripper);
     sound(&mut browser, &gripper, &["scene", "motion", "profiles", "maps"]);
+    // all segments alike
+    let branched: Vec<&str> = ["run", "cases/branched-actuator.json"]
+        .into_iter()
+        .chain(sets)
+        .collect();
+    let branched = made(&dir.path().join("branched"), &branched);
+    sound(&mut browser, &branched, &["scene", "motion", "profiles"]);
     let modes = made(&dir.path().join("modes"), &["modes", ELL, "--count", "3"]);
     sound(&mut browser, &modes, &["shapes", "scene"]);
 }

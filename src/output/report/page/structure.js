@@ -163,10 +163,11 @@ function structureDrawing(scene, layout, width, chosen) {
     add(group);
     return { beam, degrees, add: (...parts) => group.append(...parts), X: (a) => (a - beam.from) * scale, Y: (e) => -e * scale * thicker };
   });
-  const heights = scene.heights || [scene.height];
   groups.forEach((group, number) => {
     const own = (b) => beamAt(scene, b) === number;
-    const edge = (sign) => heights.flatMap((h, k) => (own((scene.borders[k] + scene.borders[k + 1]) / 2) ? [[scene.borders[k], (sign * h) / 2], [scene.borders[k + 1], (sign * h) / 2]] : []));
+    const whole = [group.beam.from, group.beam.from + group.beam.length];
+    const graded = (sign) => scene.heights.flatMap((h, k) => (own((scene.borders[k] + scene.borders[k + 1]) / 2) ? [[scene.borders[k], (sign * h) / 2], [scene.borders[k + 1], (sign * h) / 2]] : []));
+    const edge = (sign) => (scene.heights ? graded(sign) : whole.map((a) => [a, (sign * scene.height) / 2]));
     const around = [...edge(1), ...edge(-1).reverse()].map(([a, e]) => `${group.X(a).toFixed(1)} ${group.Y(e).toFixed(1)}`);
     group.add(svg("path", { d: `M${around.join("L")}Z`, "stroke-linejoin": "round", style: `fill:${css("--solid")};stroke:${css("--solid-line")}` }));
     const local = { ends: group.beam.ends.map((end) => (end.form === "joined" ? { ...end, held: {}, moves: {}, force: {} } : end)), loads: group.beam.loads, length: group.beam.length };
