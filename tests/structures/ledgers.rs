@@ -89,6 +89,20 @@ fn ledgers_of_beams_close() {
     for joint in 1..3 {
         assert_eq!([taken(&walker, joint), taken(&four_bar, joint)], [0.0; 2]);
     }
+    // as the balances of the ends tell it
+    for (memory, beams) in [
+        (&walker, ["body", "first", "second"]),
+        (&four_bar, ["crank", "coupler", "rocker"]),
+    ] {
+        let given = beams.map(|beam| memory.column(&format!("{beam}.work_joints")).unwrap());
+        let last = given.each_ref().map(|column| column[column.len() - 1]);
+        let (sum, largest) = (
+            last.iter().sum::<f64>(),
+            last.iter().fold(0.0_f64, |most, x| most.max(x.abs())),
+        );
+        println!("{beams:?}: joints give {sum:.1e} of {largest:.1e} J");
+        assert!(largest > 1e-6 && sum.abs() < 1e-6 * largest, "{sum:e} of {largest:e}");
+    }
     closed("four-bar", 0.2, |case| {
         case["beams"][1]["attachments"] = json!([
             {"at": 0.4, "stiffness_rotation_n_m_rad": 0.05, "stiffness_x_n_m": 20, "damping_z_n_s_m": 0.1},

@@ -49,16 +49,14 @@ impl MeshJoints {
                 _ => joint.inertia,
             };
             let arms = |group: &[usize]| group.iter().any(|end| arm(structure, mesh, first, *end).is_some());
-            let inertias = (0..joint.groups.len()).map(|k| if k == 0 { inertia_of_joint } else { 0.0 });
-            let moving = joint.groups.iter().zip(inertias.clone());
-            let moving: Vec<bool> = moving
-                .map(|(group, own)| inertia && (own > 0.0 || (!elastic && arms(group))))
-                .collect();
+            let inertia_of = |k: usize| if k == 0 { inertia_of_joint } else { 0.0 };
+            let moves = |k: usize, group: &[usize]| inertia && (inertia_of(k) > 0.0 || (!elastic && arms(group)));
+            let mut groups = joint.groups.iter().enumerate();
             // otherwise the damper depends on differences of unknown rates alone
-            let regular = moving.contains(&true) || joint.groups.iter().any(|group| viscous(group));
+            let regular = groups.any(|(k, group)| moves(k, group) || viscous(group));
             let mut numbers: Vec<usize> = vec![];
-            for ((group, inertia_of_group), moves) in joint.groups.iter().zip(inertias).zip(moving) {
-                if group.len() < 2 && resists.is_none() && !elastic && inertia_of_group == 0.0 {
+            for (k, group) in joint.groups.iter().enumerate() {
+                if group.len() < 2 && resists.is_none() && !elastic && inertia_of(k) == 0.0 {
                     continue; // a free end
                 }
                 let angle = all.angles.len();
@@ -69,9 +67,9 @@ impl MeshJoints {
                 }
                 all.angles.push(JointAngle {
                     joint: number,
-                    inertia: inertia_of_group,
+                    inertia: inertia_of(k),
                     ends: group.iter().map(|end| (ends[*end].node, -ends[*end].outward)).collect(),
-                    moves,
+                    moves: moves(k, group),
                     relative_to,
                     damped: viscous(group) || (losing && (regular || relative_to.is_some())),
                 });
@@ -107,7 +105,6 @@ impl MeshJoints {
                 let to = if elastic { of_group } else { first };
                 for end in group.iter().copied().filter(|end| *end != to) {
                     all.ties.push(Tie {
-                        joint: number,
                         node: ends[end].node,
                         to: ends[to].node,
                         turn: turn(to, end),

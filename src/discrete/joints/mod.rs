@@ -49,8 +49,6 @@ pub struct MeshJoints {
 /// A node that follows another.
 #[derive(Clone, Debug)]
 pub struct Tie {
-    /// Number of its joint.
-    pub joint: usize,
     /// The node.
     pub node: usize,
     /// The node that it follows.
@@ -100,12 +98,24 @@ impl MeshHinge {
         }
     }
 
+    /// Rotation of the further beam relative to the first one, and its rate.
+    #[inline]
+    fn turned<T: Scalar>(&self, w: &Workspace<T>) -> [T; 2] {
+        let [first, other] = self.angles;
+        [&w.shape.joints.angle, &w.shape.joints.rate].map(|of| of[other] - of[first])
+    }
+
+    /// Moment against the rotation [N m].
+    #[inline]
+    fn moment<T: Scalar>(&self, now: &TimeData, w: &Workspace<T>) -> T {
+        let [angle, rate] = self.turned(w);
+        let by = hinge_moments(&self.law_now(now), angle, rate);
+        by.elastic + by.damping
+    }
+
     /// Power that it takes [W].
     pub fn power(&self, now: &TimeData, w: &Workspace<f64>) -> f64 {
-        let [angle, rate] =
-            [&w.shape.joints.angle, &w.shape.joints.rate].map(|of| of[self.angles[1]] - of[self.angles[0]]);
-        let moments = hinge_moments(&self.law_now(now), angle, rate);
-        (moments.elastic + moments.damping) * rate
+        self.moment(now, w) * self.turned(w)[1]
     }
 }
 
@@ -141,15 +151,6 @@ impl Tie {
     /// Displacement of the node that it follows from its own.
     pub fn to_first(&self, u: Planar<f64>, angles: &[f64]) -> Planar<f64> {
         (u - self.by_arm(angles)).turned_back(self.turn)
-    }
-
-    /// Velocity of the node beyond that of the joint's body, which is rounding.
-    pub fn slip(&self, w: &Workspace<f64>) -> Planar<f64> {
-        let moved = w.motion.v[self.to].turned(self.turn);
-        let turned = self.arm.map_or_else(Planar::default, |(angle, arm)| {
-            lever(w.shape.joints.angle[angle], arm).1 * w.shape.joints.rate[angle]
-        });
-        w.motion.v[self.node] - moved - turned
     }
 
     fn by_arm(&self, angles: &[f64]) -> Planar<f64> {
@@ -234,13 +235,7 @@ impl MeshJoints {
         }
         for hinge in &self.hinges {
             let [first, other] = hinge.angles;
-            let shape = &w.shape;
-            let by = hinge_moments(
-                &hinge.law_now(now),
-                shape.joints.angle[other] - shape.joints.angle[first],
-                shape.joints.rate[other] - shape.joints.rate[first],
-            );
-            let moment = by.elastic + by.damping;
+            let moment = hinge.moment(now, w);
             r[own.moment(other)] += moment;
             r[own.moment(first)] -= moment;
         }
@@ -286,12 +281,9 @@ impl MeshJoints {
 
     /// Energy of hinges, and of the rotation of bodies [J].
     pub fn energies(&self, now: &TimeData, w: &Workspace<f64>) -> [f64; 2] {
-        let shape = &w.shape;
-        let hinges = self.hinges.iter().map(|hinge| {
-            let [first, other] = hinge.angles.map(|angle| shape.joints.angle[angle]);
-            hinge_energy(&hinge.law_now(now), other - first)
-        });
-        let bodies = self.angles.iter().zip(&shape.joints.rate);
+        let hinges = self.hinges.iter();
+        let hinges = hinges.map(|hinge| hinge_energy(&hinge.law_now(now), hinge.turned(w)[0]));
+        let bodies = self.angles.iter().zip(&w.shape.joints.rate);
         [
             hinges.sum::<f64>() + self.elastic.iter().map(|one| one.energy(w)).sum::<f64>(),
             bodies.map(|(angle, rate)| 0.5 * angle.inertia * rate * rate).sum(),
@@ -300,12 +292,8 @@ impl MeshJoints {
 
     /// Power lost in hinges [W].
     pub fn loss(&self, w: &Workspace<f64>) -> f64 {
-        let rate = |hinge: &MeshHinge| {
-            let [first, other] = hinge.angles.map(|angle| w.shape.joints.rate[angle]);
-            other - first
-        };
         let hinges = self.hinges.iter();
-        let hinges = hinges.map(|hinge| hinge.law.damping_n_m_s_rad * rate(hinge).powi(2));
+        let hinges = hinges.map(|hinge| hinge.law.damping_n_m_s_rad * hinge.turned(w)[1].powi(2));
         hinges.sum::<f64>() + self.elastic.iter().map(|one| one.loss(w)).sum::<f64>()
     }
 }

@@ -91,22 +91,18 @@ pub fn lose_nothing(system: &System, out: &mut [f64]) {
     }
 }
 
-/// Power that a joint takes: that of springs, dampers and the rotation of its body, and rounding where ends share their motion [W].
+/// Power that a joint takes: that of springs, dampers and the rotation of its body. Ends that share their motion take none, [E105] [W].
 pub fn power_of_joint(system: &System, now: &TimeData, w: &Workspace<f64>, number: usize) -> f64 {
     let joints = &system.joints;
-    let ties = joints.ties.iter().filter(|tie| tie.joint == number);
-    let shared = ties.map(|tie| -solid::reaction(system, now, w, tie.node).dot(tie.slip(w)));
     let hinges = joints.hinges.iter().filter(|hinge| hinge.joint == number);
+    let hinges = hinges.map(|hinge| hinge.power(now, w));
     let elastic = joints.elastic.iter().filter(|one| one.joint == number);
+    let elastic = elastic.map(|one| one.power(w));
     let turning = &w.shape.joints;
     let bodies = joints.angles.iter().zip(turning.rate.iter().zip(&turning.acceleration));
     let bodies = bodies.filter(|(angle, _)| angle.joint == number);
-    shared.sum::<f64>()
-        + hinges.map(|hinge| hinge.power(now, w)).sum::<f64>()
-        + elastic.map(|one| one.power(w)).sum::<f64>()
-        + bodies
-            .map(|(angle, (rate, acceleration))| angle.inertia * rate * acceleration)
-            .sum::<f64>()
+    let bodies = bodies.map(|(angle, (rate, acceleration))| angle.inertia * rate * acceleration);
+    hinges.chain(elastic).chain(bodies).fold(0.0, |all, one| all + one)
 }
 
 /// Power of its joint on an end [W]; 0 without a joint.

@@ -25,8 +25,8 @@ enum ReactionKind {
     Turned([usize; 2], usize),
     /// Kinetic (0) or elastic (1) energy of the beam of a structure that begins at the end.
     Energy(usize, usize),
-    /// Integral of a rate of this beam.
-    Passed(usize, BeamRate),
+    /// Integral of a rate of this beam, with its number in [`PASSED`].
+    Passed(usize, usize),
     /// Power that a joint takes from its beams.
     Joint(usize),
 }
@@ -90,8 +90,8 @@ fn all(system: &System, at_rest: bool) -> Vec<ReactionKind> {
     let closes = !at_rest && system.model.strain_energy().is_none();
     for root in roots {
         all.extend([0, 1].map(|kind| ReactionKind::Energy(root, kind)));
-        let passed = PASSED.iter().filter(|_| closes);
-        all.extend(passed.map(|(rate, ..)| ReactionKind::Passed(root, *rate)));
+        let passed = (0..PASSED.len()).filter(|_| closes);
+        all.extend(passed.map(|k| ReactionKind::Passed(root, k)));
     }
     if !at_rest {
         let joints = system.model.structure.iter().map(|structure| structure.joints.len());
@@ -133,12 +133,15 @@ fn parts(system: &System, root: usize) -> impl Iterator<Item = usize> + '_ {
     beams.enumerate().filter(of).map(|(part, _)| part)
 }
 
+/// Indices of the integrals of a rate over all parts of the beam that begins at a root.
+fn passed(system: &System, root: usize, k: usize) -> impl Iterator<Item = usize> + '_ {
+    parts(system, root).map(move |part| beams::index(system, part, PASSED[k].0))
+}
+
 /// For each column of a run: the integrals of which it is the sum, if it is no part of a state.
 pub fn integrals(system: &System) -> impl Iterator<Item = Vec<usize>> + '_ {
     all(system, false).into_iter().map(|one| match one {
-        ReactionKind::Passed(root, rate) => parts(system, root)
-            .map(|part| beams::index(system, part, rate))
-            .collect(),
+        ReactionKind::Passed(root, k) => passed(system, root, k).collect(),
         _ => vec![],
     })
 }
@@ -182,11 +185,8 @@ pub fn columns(system: &System, at_rest: bool) -> impl Iterator<Item = HistoryCo
                 let [name, about] = ENERGIES[kind];
                 (format!("{}{name}", of(root)), "J", about.to_owned())
             }
-            ReactionKind::Passed(root, rate) => {
-                let [name, about] = PASSED
-                    .iter()
-                    .find(|(one, ..)| *one == rate)
-                    .map_or([""; 2], |(_, name, about)| [*name, *about]);
+            ReactionKind::Passed(root, k) => {
+                let (_, name, about) = PASSED[k];
                 (format!("{}{name}", of(root)), "J", about.to_owned())
             }
             ReactionKind::Joint(k) => (
@@ -227,9 +227,7 @@ pub fn values(look: &StateView, integrals: Option<&[f64]>, put: &mut impl FnMut(
                     [e.kinetic + e.rotary, e.axial + e.bending + e.relaxing][kind]
                 })
                 .sum(),
-            ReactionKind::Passed(root, rate) => parts(system, root)
-                .filter_map(|part| integrals?.get(beams::index(system, part, rate)))
-                .sum(),
+            ReactionKind::Passed(root, k) => passed(system, root, k).filter_map(|at| integrals?.get(at)).sum(),
             ReactionKind::Joint(k) => beams::power_of_joint(system, now, w, k),
             ReactionKind::Attached(k, axis) => {
                 let own = system.attached.iter().filter(|attached| attached.number == k);

@@ -41,9 +41,8 @@ pub fn unpack<T: Scalar>(system: &System, now: &TimeData, y: &[T], yp: &[T], w: 
         }
     }
     let joints = &mut w.shape.joints;
-    for of in [&mut joints.angle, &mut joints.rate, &mut joints.acceleration] {
-        system.joints.add_first(of);
-    }
+    system.joints.add_first(&mut joints.angle);
+    system.joints.add_first(&mut joints.rate);
     system.joints.move_nodes(now, w);
     let sections = &mut w.shape.sections;
     copy(&mut sections.angle, y, &l.turning.angle);

@@ -88,20 +88,12 @@ fn places_are_data_of_structures_only() {
     let dir = tempfile::tempdir().expect("a folder");
     let page = data(&made(&dir.path().join("run"), &["run", ELL]));
     let scene = &page["scene"];
-    let beams: Vec<&str> = scene["beams"]
-        .as_array()
-        .expect("beams")
-        .iter()
-        .filter_map(|b| b["name"].as_str())
-        .collect();
-    assert_eq!(beams, ["left", "up", "arm"]);
-    let kinds: Vec<&str> = scene["joints"]
-        .as_array()
-        .expect("joints")
-        .iter()
-        .filter_map(|j| j["kind"].as_str())
-        .collect();
-    assert_eq!(kinds, ["hinge", "rigid"]);
+    let texts = |list: &str, key: &str| -> Vec<&str> {
+        let all = scene[list].as_array().expect(list).iter();
+        all.filter_map(|one| one[key].as_str()).collect()
+    };
+    assert_eq!(texts("beams", "name"), ["left", "up", "arm"]);
+    assert_eq!(texts("joints", "kind"), ["hinge", "rigid"]);
     assert_eq!(scene["joints"][0]["at"][1]["z"], 0.05);
     assert_eq!(scene["bladders"]["labels"][4], "up:1");
     assert_eq!(scene["bladders"]["labels"][9 + 7], "arm:-1");
