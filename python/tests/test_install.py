@@ -69,3 +69,27 @@ def test_the_tarball_runs_where_no_library_is(packages, tmp_path):
         assert all(Path(taken[name]).is_relative_to(root / "slcbeam/lib") for name in own & taken.keys()) and own & taken.keys()
         told(program, *CASE, root / "tmp/result", cwd=root / "slcbeam", env={})
     assert (root / "tmp/result/summary.json").is_file()
+
+
+def test_versions_agree():
+    version = re.search(r'^version = "(.*)"', (ROOT / "Cargo.toml").read_text(), re.M)[1]
+    manifests = [ROOT / "python/Cargo.toml", *(ROOT / "crates").glob("*/Cargo.toml")]
+    assert {re.search(r'^version = "(.*)"', path.read_text(), re.M)[1] for path in manifests} == {version}
+    assert f"\nversion: {version}\n" in (ROOT / "CITATION.cff").read_text()
+    assert re.search(rf"^## \[{re.escape(version)}\] - (20\d\d-\d\d-\d\d|Unreleased)$", (ROOT / "CHANGELOG.md").read_text(), re.M)
+    named = set(re.findall(r"slcbeam[-_](\d+\.\d+\.\d+)", (ROOT / "docs/install.md").read_text()))
+    assert named == {version}
+
+
+def test_sources_are_packaged_with_all_that_a_build_reads(tmp_path):
+    """The crates as for crates.io, and the source package of Python."""
+    told("cargo", "package", "--workspace", "--no-verify", "--allow-dirty", "--offline", "--target-dir", tmp_path, cwd=ROOT)
+    crates = {path.name.rsplit("-", 1)[0]: path for path in (tmp_path / "package").glob("*.crate")}
+    assert {"slcbeam", "slcbeam-dense", "slcbeam-section"} <= set(crates)
+    assert crates["slcbeam"].stat().st_size < 10e6, "crates.io accepts 10 MB"
+    told(ROOT / "scripts/package", tmp_path, "sdist")
+    (sdist,) = tmp_path.glob("slcbeam-*.tar.gz")
+    for package in (sdist, crates["slcbeam"]):
+        held = {name.split("/", 1)[1] for name in told("tar", "--list", "--file", package).split()}
+        # files that the sources include, and that the build copies
+        assert {"build.rs", "cases/schema.json", "cases/wiring-2.json", "Cargo.lock"} <= held, package

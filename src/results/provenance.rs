@@ -57,7 +57,7 @@ impl Provenance {
         }
     }
 
-    /// `slcbeam 0.1.0 (0123456789ab) with SUNDIALS 6.4.1 and SuiteSparse 5.12.0`.
+    /// `slcbeam 0.2.0 (0123456789ab) with SUNDIALS 6.4.1 and SuiteSparse 5.12.0`.
     pub fn describe(&self) -> String {
         let commit = self
             .commit
