@@ -25,6 +25,7 @@ mod new;
 mod optimize;
 mod paper;
 mod periodic;
+mod plot;
 pub mod progress;
 mod progress_line;
 mod report;
@@ -177,6 +178,7 @@ fn act(command: &Command, began: Instant) -> Result<ExitCode> {
         Command::Bands(asked) => bands::bands(asked),
         Command::Export(asked) => export::export(asked),
         Command::Report(asked) => report::report(asked),
+        Command::Plot(asked) => plot::plot(asked),
         Command::Mapping(asked) => mapping::mapping(asked),
         Command::Verify(asked) => verify::verify(asked),
         Command::Schema(_) => schema::schema(),

@@ -34,6 +34,7 @@
 //! report               report.html: a result folder as one page
 //! pictures             converts recorded files to the data of each picture
 //! plot                 draws pictures: plain data to SVG text
+//! quantity_plot        pictures of chosen quantities of any result
 //! numbers              formats numbers for readers
 //! records              rows as the text of a CSV file
 //! columns              rows as a text table for readers
@@ -70,6 +71,7 @@ pub mod optimum;
 pub mod periodic;
 pub mod pictures;
 pub mod plot;
+pub mod quantity_plot;
 pub mod reading;
 pub mod recorder;
 pub mod records;

@@ -22,6 +22,7 @@ use super::export::ExportArguments;
 use super::interrupt::WallArguments;
 use super::measure::MeasureArguments;
 use super::new::NewArguments;
+use super::plot::PlotArguments;
 use super::report::ReportArguments;
 use super::response::ResponseArguments;
 use super::result_folder::PlaceArguments;
@@ -89,6 +90,8 @@ pub enum Command {
     Export(ExportArguments),
     /// Write one self-contained HTML page of a result folder of any command
     Report(ReportArguments),
+    /// Draw quantities of results as a vector picture (SVG, PDF) in the sizes and fonts of journals
+    Plot(PlotArguments),
     /// Print the paper's tables A.1 and A.2 (maps between beam and network) for a case, as CSV
     Mapping(MappingArguments),
     /// Compute exact results of beam and network theory and compare, with observed orders
@@ -130,6 +133,7 @@ impl Command {
             Self::Schema(a) => a.json,
             Self::Export(a) => a.json,
             Self::Report(a) => a.json,
+            Self::Plot(a) => a.json,
             Self::Explain(a) => a.json,
             Self::New(a) => a.json,
             Self::Completions(_) => false,

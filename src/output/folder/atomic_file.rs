@@ -12,7 +12,7 @@ use crate::numerics::threads::{StartedTask, begin};
 use crate::results::{self, ResultFile, StoredResult};
 
 /// Writes a file that the user names, completely or not at all. An existing file keeps its permissions; the target of a link is replaced.
-pub fn replace(path: &Path, text: &str) -> Result<()> {
+pub fn replace(path: &Path, text: impl AsRef<[u8]>) -> Result<()> {
     let target = fs::canonicalize(path).unwrap_or_else(|_| path.to_path_buf());
     let old = match fs::OpenOptions::new()
         .write(true)
@@ -28,7 +28,7 @@ pub fn replace(path: &Path, text: &str) -> Result<()> {
         Err(e) => return Err(fault("write", path, e)),
     };
     put_whole(&target, |file| {
-        file.write_all(text.as_bytes())?;
+        file.write_all(text.as_ref())?;
         old.map_or(Ok(()), |permissions| file.set_permissions(permissions))
     })
 }
@@ -37,7 +37,7 @@ pub fn replace(path: &Path, text: &str) -> Result<()> {
 ///
 /// # Errors
 /// The existing file begins differently, or the file cannot be written.
-pub fn replace_alike(path: &Path, text: &str, beginnings: &[&str]) -> Result<()> {
+pub fn replace_alike(path: &Path, text: impl AsRef<[u8]>, beginnings: &[&str]) -> Result<()> {
     let mut begin = vec![];
     let there = fs::metadata(path).is_ok_and(|there| there.is_file());
     let read = !there
@@ -50,6 +50,18 @@ pub fn replace_alike(path: &Path, text: &str, beginnings: &[&str]) -> Result<()>
         return Err(fault("write", path, io::Error::new(io::ErrorKind::AlreadyExists, why)));
     }
     replace(path, text)
+}
+
+/// Writes a picture, SVG or PDF, to a path of the user. An existing picture is replaced on request only.
+///
+/// # Errors
+/// The file exists, or it cannot be written.
+pub fn replace_picture(path: &Path, bytes: &[u8], force: bool) -> Result<()> {
+    if path.is_file() && !force {
+        let why = "it exists; name another file with --out, or replace it with --force";
+        return Err(fault("write", path, io::Error::new(io::ErrorKind::AlreadyExists, why)));
+    }
+    replace_alike(path, bytes, &["<svg", "<?xml", "%pdf"])
 }
 
 /// Fills a file under a hidden name, syncs it to the disk and renames it. A file that cannot be filled is removed.

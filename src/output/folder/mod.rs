@@ -17,7 +17,7 @@ use crate::error::{Error, Result};
 pub(crate) use atomic_file::{
     AtomicFile, Wait, at_once, create, damaged, entries, name_of, open, put_whole, result, text_of, unlink,
 };
-pub use atomic_file::{replace, replace_alike};
+pub use atomic_file::{replace, replace_alike, replace_picture};
 use lock::Lock;
 pub use origin::other_origin;
 use origin::{ORIGIN, foreign};

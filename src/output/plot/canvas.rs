@@ -1,12 +1,7 @@
-//! Draws lines, rectangles and text as SVG, in points with a resolution of a tenth of a point.
-
-use std::fmt::{self, Write as _};
+//! Collects lines, areas and text of a drawing, in points, for [`super::svg`] and [`super::pdf`].
 
 use super::colour::Colour;
-use crate::error::visible;
-
-/// Fonts that exist in browsers and in converters from SVG to PDF.
-const FONT: &str = "Helvetica Neue, Helvetica, Arial, Liberation Sans, DejaVu Sans, sans-serif";
+use super::style::{POINTS_PER_MM, PictureStyle};
 
 /// Color of text.
 pub const INK: Colour = Colour(0x22, 0x26, 0x2b);
@@ -87,82 +82,112 @@ impl TextStyle {
     }
 }
 
-/// A drawing area; the origin is the upper left corner.
-pub struct Canvas {
-    svg: String,
+/// A shape of a drawing, in points from the upper left corner.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Shape {
+    /// A line through points.
+    Line(Vec<(f64, f64)>, LineStyle),
+    /// A filled polygon with its opacity.
+    Polygon(Vec<(f64, f64)>, Colour, f64),
+    /// A filled rectangle between two corners, the upper left one first.
+    Rectangle((f64, f64), (f64, f64), Colour),
+    /// An open ring with center, radius and line.
+    Ring((f64, f64), f64, LineStyle),
+    /// Text at a point.
+    Text((f64, f64), String, TextStyle),
+    /// Start of an item with a text under the pointer, which links to an element of a page.
+    LinkStart(String, String),
+    /// End of an item.
+    LinkEnd,
 }
 
-/// Draws a picture of the given size in points and returns the SVG text.
-pub fn picture(width: f64, height: f64, draw: impl FnOnce(&mut Canvas)) -> String {
-    let mut canvas = Canvas { svg: String::new() };
-    canvas.put(format_args!(
-        "<svg width=\"{width}\" height=\"{height}\" viewBox=\"0 0 {width} {height}\" xmlns=\"http://www.w3.org/2000/svg\" \
-         font-family=\"{FONT}\" stroke-linejoin=\"round\" stroke-linecap=\"round\">"
-    ));
-    canvas.rectangle((0.0, 0.0), (width, height), Colour(255, 255, 255));
-    draw(&mut canvas);
-    canvas.put(format_args!("</svg>"));
-    canvas.svg
+/// A drawing: all shapes in the order in which they are drawn.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Drawing {
+    /// Width and height [pt].
+    pub size: (f64, f64),
+    /// Shapes.
+    pub shapes: Vec<Shape>,
+    /// Style of the picture.
+    pub style: PictureStyle,
+}
+
+/// A drawing area; the origin is the upper left corner. Its unit of length is that of the layout.
+pub struct Canvas {
+    shapes: Vec<Shape>,
+    /// Points per unit of the layout.
+    scale: f64,
+}
+
+impl Drawing {
+    /// Draws a picture of the given size in units of the layout.
+    pub fn new(style: &PictureStyle, (width, height): (f64, f64), draw: impl FnOnce(&mut Canvas)) -> Self {
+        let mut canvas = Canvas {
+            shapes: vec![],
+            scale: style.scale,
+        };
+        canvas.rectangle((0.0, 0.0), (width, height), Colour(255, 255, 255));
+        draw(&mut canvas);
+        Self {
+            size: (style.scale * width, style.scale * height),
+            shapes: canvas.shapes,
+            style: style.clone(),
+        }
+    }
+
+    /// Width and height [mm].
+    pub fn size_mm(&self) -> [f64; 2] {
+        [self.size.0, self.size.1].map(|x| x / POINTS_PER_MM)
+    }
 }
 
 impl Canvas {
-    /// Writes an element.
-    fn put(&mut self, element: fmt::Arguments) {
-        // writing to a string cannot fail
-        let _ = writeln!(self.svg, "{element}");
+    fn placed(&self, at: (f64, f64)) -> (f64, f64) {
+        (self.scale * at.0, self.scale * at.1)
+    }
+
+    fn all_placed(&self, points: &[(f64, f64)]) -> Vec<(f64, f64)> {
+        points.iter().map(|p| self.placed(*p)).collect()
+    }
+
+    fn scaled(&self, stroke: LineStyle) -> LineStyle {
+        LineStyle {
+            width: self.scale * stroke.width,
+            dash: stroke.dash.map(|(dash, gap)| (self.scale * dash, self.scale * gap)),
+            ..stroke
+        }
     }
 
     /// Draws a linked item: `words` are shown under the pointer, and the link leads to the element `id` of a page.
     pub fn thing(&mut self, words: &str, id: &str, draw: impl FnOnce(&mut Self)) {
-        self.put(format_args!("<a href=\"#{id}\"><title>{}</title>", escaped(words)));
+        self.shapes.push(Shape::LinkStart(words.into(), id.into()));
         draw(self);
-        self.put(format_args!("</a>"));
+        self.shapes.push(Shape::LinkEnd);
     }
 
     /// A line through points; broken where a coordinate is not finite.
     pub fn line(&mut self, points: &[(f64, f64)], stroke: LineStyle) {
-        let (colour, width) = (stroke.colour, tenths(stroke.width).max(0.1));
-        let dash = stroke
-            .dash
-            .map(|(dash, gap)| format!(" stroke-dasharray=\"{dash} {gap}\""));
-        let dash = dash.unwrap_or_default();
+        let stroke = self.scaled(stroke);
         let pieces = points.split(|p| !(p.0.is_finite() && p.1.is_finite()));
         for piece in pieces.filter(|piece| piece.len() > 1) {
-            let mut points: Vec<_> = piece.iter().map(|&p| fine(p)).collect();
-            points.dedup();
-            if points.len() == 1 {
-                points.push(points[0]);
-            }
-            self.put(format_args!(
-                "<polyline fill=\"none\" stroke=\"{colour}\" stroke-width=\"{width}\"{dash} points=\"{}\"/>",
-                listed(&points)
-            ));
+            self.shapes.push(Shape::Line(self.all_placed(piece), stroke));
         }
     }
 
     /// A filled rectangle between two corners, the upper left one first.
     pub fn rectangle(&mut self, a: (f64, f64), b: (f64, f64), colour: Colour) {
-        let ((x, y), b) = (fine(a), fine(b));
-        let (width, height) = (tenths(b.0 - x), tenths(b.1 - y));
-        self.put(format_args!(
-            "<rect x=\"{x}\" y=\"{y}\" width=\"{width}\" height=\"{height}\" fill=\"{colour}\"/>"
-        ));
+        self.shapes
+            .push(Shape::Rectangle(self.placed(a), self.placed(b), colour));
     }
 
     /// A filled polygon.
     pub fn polygon(&mut self, points: &[(f64, f64)], colour: Colour) {
-        self.filled(points, format_args!("fill=\"{colour}\""));
+        self.shapes.push(Shape::Polygon(self.all_placed(points), colour, 1.0));
     }
 
     /// A translucent polygon.
     pub fn shade(&mut self, points: &[(f64, f64)], colour: Colour) {
-        self.filled(points, format_args!("fill=\"{colour}\" fill-opacity=\"0.22\""));
-    }
-
-    fn filled(&mut self, points: &[(f64, f64)], fill: fmt::Arguments) {
-        let mut points: Vec<_> = points.iter().map(|&p| fine(p)).collect();
-        points.dedup();
-        self.put(format_args!("<polygon {fill} points=\"{}\"/>", listed(&points)));
+        self.shapes.push(Shape::Polygon(self.all_placed(points), colour, 0.22));
     }
 
     /// The outline of a rectangle.
@@ -172,10 +197,8 @@ impl Canvas {
 
     /// An open ring about a point.
     pub fn ring(&mut self, centre: (f64, f64), radius: f64, stroke: LineStyle) {
-        let ((x, y), radius, colour, width) = (fine(centre), tenths(radius), stroke.colour, stroke.width);
-        self.put(format_args!(
-            "<circle cx=\"{x}\" cy=\"{y}\" r=\"{radius}\" fill=\"none\" stroke=\"{colour}\" stroke-width=\"{width}\"/>"
-        ));
+        let ring = Shape::Ring(self.placed(centre), self.scale * radius, self.scaled(stroke));
+        self.shapes.push(ring);
     }
 
     /// Draws text at a point.
@@ -183,59 +206,10 @@ impl Canvas {
         if text.is_empty() {
             return;
         }
-        let anchor = match words.anchor {
-            TextAnchor::Left => "start",
-            TextAnchor::Centre => "middle",
-            TextAnchor::Right => "end",
+        let words = TextStyle {
+            size: self.scale * words.size,
+            ..words
         };
-        // Half an ex below the point centers lowercase letters; capitals and digits need slightly more.
-        let lower = 0.09 * words.size;
-        let (x, y) = fine(match words.upright {
-            true => (at.0 + lower, at.1),
-            false => (at.0, at.1 + lower),
-        });
-        let turned = match words.upright {
-            true => format!(" transform=\"rotate(270, {x}, {y})\""),
-            false => String::new(),
-        };
-        let weight = if words.bold { " font-weight=\"bold\"" } else { "" };
-        let text = escaped(text);
-        self.put(format_args!(
-            "<text x=\"{x}\" y=\"{y}\" dy=\"0.5ex\" text-anchor=\"{anchor}\" font-size=\"{}\" fill=\"{}\"{weight}{turned}>{text}</text>",
-            words.size, words.colour
-        ));
+        self.shapes.push(Shape::Text(self.placed(at), text.into(), words));
     }
-}
-
-/// Escapes text for an element.
-fn escaped(text: &str) -> String {
-    visible(text)
-        .replace('&', "&amp;")
-        .replace('<', "&lt;")
-        .replace('>', "&gt;")
-}
-
-/// Rounds to a tenth of a point, the resolution of a picture.
-fn tenths(x: f64) -> f64 {
-    f64::from((10.0 * x).round() as i32) / 10.0
-}
-
-fn fine(p: (f64, f64)) -> (f64, f64) {
-    (tenths(p.0), tenths(p.1))
-}
-
-fn listed(points: &[(f64, f64)]) -> String {
-    let mut text = String::with_capacity(12 * points.len());
-    let mut buffer = zmij::Buffer::new();
-    let mut put = |x: f64, end: char| {
-        let number = buffer.format(x);
-        text.push_str(number.strip_suffix(".0").unwrap_or(number));
-        text.push(end);
-    };
-    for (x, y) in points {
-        put(*x, ',');
-        put(*y, ' ');
-    }
-    text.pop();
-    text
 }

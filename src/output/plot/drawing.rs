@@ -1,10 +1,11 @@
-//! Draws a picture as SVG: grids, series, axes, legends and color scales of its panels.
+//! Draws a picture: grids, series, axes, legends and color scales of its panels.
 
-use super::canvas::{Canvas, FAINT_INK, INK, LineStyle, TextAnchor, TextStyle, picture};
+use super::canvas::{Canvas, Drawing, FAINT_INK, INK, LineStyle, TextAnchor, TextStyle};
 use super::colour::Colour;
 use super::labels::LabelRoom;
-use super::layout::{MARGIN, NORMAL, PlacedPanel, SAMPLE, SMALL, lay, width_of};
+use super::layout::{MARGIN, PlacedPanel, SAMPLE, lay, width_of};
 use super::picture::{Glyph, Picture, PictureSeries, SeriesKind};
+use super::style::PictureStyle;
 
 const GRID: Colour = Colour(0xe4, 0xe7, 0xea);
 const ZERO: Colour = Colour(0xa9, 0xaf, 0xb6);
@@ -18,16 +19,26 @@ const PAPER: Colour = Colour(0xff, 0xff, 0xff);
 impl Picture {
     /// The SVG text; `None` if there is nothing to draw.
     pub fn svg(&self) -> Option<String> {
+        self.drawing(&PictureStyle::screen()).map(|drawing| drawing.svg())
+    }
+
+    /// Width and height of the sheet, in units of the layout.
+    pub fn size(&self, style: &PictureStyle) -> (f64, f64) {
+        lay(self, style).1
+    }
+
+    /// The drawing in a style; `None` if there is nothing to draw.
+    pub fn drawing(&self, style: &PictureStyle) -> Option<Drawing> {
         self.rows.iter().flatten().next()?;
-        let (rows, (width, height), about) = lay(self);
-        Some(picture(width, height, |canvas| {
+        let (rows, size, about) = lay(self, style);
+        Some(Drawing::new(style, size, |canvas| {
             let bold = TextStyle {
                 bold: true,
                 ..TextStyle::new(16.0, TextAnchor::Left)
             };
             canvas.text((MARGIN, 20.0), &self.title, bold);
             for (k, line) in about.iter().enumerate() {
-                let words = TextStyle::new(NORMAL, TextAnchor::Left).coloured(FAINT_INK);
+                let words = TextStyle::new(style.normal, TextAnchor::Left).coloured(FAINT_INK);
                 canvas.text((MARGIN, 40.0 + 16.0 * k as f64), line, words);
             }
             rows.iter().flatten().for_each(|laid| laid.draw(canvas));
@@ -49,7 +60,7 @@ impl PlacedPanel<'_> {
             .iter()
             .filter(below)
             .for_each(|one| self.one(canvas, one, &mut labels));
-        if !bare {
+        if !bare && !self.style.paper {
             self.grid(canvas);
         }
         let others = series.iter().filter(|one| !below(one));
@@ -62,7 +73,7 @@ impl PlacedPanel<'_> {
         for entry in &self.legend {
             let (x, y) = (self.left + entry.at.0, self.top + entry.at.1);
             entry.series.iter().for_each(|one| sample(canvas, (x, y), one));
-            let words = TextStyle::new(SMALL, TextAnchor::Left);
+            let words = TextStyle::new(self.style.small, TextAnchor::Left);
             for (k, line) in entry.text.lines().enumerate() {
                 canvas.text((x + SAMPLE, y + 14.0 * k as f64), line, words);
             }
@@ -122,16 +133,17 @@ impl PlacedPanel<'_> {
     /// Frame, ticks and names.
     fn axes(&self, canvas: &mut Canvas) {
         let (left, bottom) = (self.left, self.bottom());
+        let outwards = if self.style.paper { -1.0 } else { 1.0 };
         canvas.frame((left, self.top), (self.right(), bottom), FRAME);
-        let mut room = LabelRoom::new((0.0, SMALL));
+        let mut room = LabelRoom::new((0.0, self.style.small));
         for (y, label) in &self.y.ticks {
             let at = self.place(0.0, self.y.share(*y)).1;
-            canvas.line(&[(left - 4.0, at), (left, at)], FRAME);
+            canvas.line(&[(left - 4.0 * outwards, at), (left, at)], FRAME);
             if self.labelled[1] && room.claim((left, at)) {
-                canvas.text((left - 7.0, at), label, TextStyle::new(SMALL, TextAnchor::Right));
+                canvas.text((left - 7.0, at), label, TextStyle::new(self.style.small, TextAnchor::Right));
             }
         }
-        let words = TextStyle::new(NORMAL, TextAnchor::Centre);
+        let words = TextStyle::new(self.style.normal, TextAnchor::Centre);
         let upright = TextStyle { upright: true, ..words };
         if self.labelled[1] {
             let at = (left - self.beside(), self.top + 0.5 * self.panel.size.1);
@@ -139,9 +151,9 @@ impl PlacedPanel<'_> {
         }
         let groups = &self.panel.x.groups;
         let down = if groups.is_empty() { 0.0 } else { 16.0 };
-        let small = TextStyle::new(SMALL, TextAnchor::Centre);
-        let longest = |all: &[(f64, String)]| all.iter().map(|(_, text)| width_of(text, SMALL)).fold(4.0, f64::max);
-        let mut room = LabelRoom::new((0.85 * longest(groups), SMALL));
+        let small = TextStyle::new(self.style.small, TextAnchor::Centre);
+        let longest = |all: &[(f64, String)]| all.iter().map(|(_, text)| width_of(text, self.style.small)).fold(4.0, f64::max);
+        let mut room = LabelRoom::new((0.85 * longest(groups), self.style.small));
         for (x, label) in groups {
             let at = (self.at((*x, 0.0)).0, bottom + 13.0);
             if room.claim(at) {
@@ -149,10 +161,10 @@ impl PlacedPanel<'_> {
             }
         }
         // space ticks by the longest label
-        let mut room = LabelRoom::new((4.0 + longest(&self.x.ticks), SMALL));
+        let mut room = LabelRoom::new((4.0 + longest(&self.x.ticks), self.style.small));
         for (x, label) in &self.x.ticks {
             let at = self.place(self.x.share(*x), 0.0).0;
-            canvas.line(&[(at, bottom), (at, bottom + 4.0)], FRAME);
+            canvas.line(&[(at, bottom), (at, bottom + 4.0 * outwards)], FRAME);
             if self.labelled[0] && room.claim((at, bottom)) {
                 canvas.text((at, bottom + 13.0 + down), label, small);
             }
@@ -177,9 +189,9 @@ impl PlacedPanel<'_> {
         for (x, label) in &scale.ticks {
             let at = self.bottom() - self.panel.size.1 * scale.share(*x);
             canvas.line(&[(right, at), (right + 4.0, at)], FRAME);
-            canvas.text((right + 7.0, at), label, TextStyle::new(SMALL, TextAnchor::Left));
+            canvas.text((right + 7.0, at), label, TextStyle::new(self.style.small, TextAnchor::Left));
         }
-        let words = TextStyle::new(SMALL, TextAnchor::Left);
+        let words = TextStyle::new(self.style.small, TextAnchor::Left);
         canvas.text((left - 4.0, self.top - 12.0), scale.named(&bar.axis.name).trim(), words);
         if let Some((colour, text)) = &bar.besides {
             let at = self.bottom() + 18.0;

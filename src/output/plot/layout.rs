@@ -1,12 +1,9 @@
 //! Lays out a picture: scales and positions of its panels, room for labels, legends and color scales.
 
 use super::picture::{Panel, Picture, PictureSeries};
+use super::style::PictureStyle;
 use super::ticks::Scale;
 
-/// Size of tick labels and legends [pt].
-pub const SMALL: f64 = 11.0;
-/// Size of axis names [pt].
-pub const NORMAL: f64 = 12.5;
 /// Width of a letter relative to the size of its text.
 const LETTER: f64 = 0.53;
 /// Smallest width of a sheet [pt].
@@ -28,6 +25,8 @@ pub fn width_of(text: &str, size: f64) -> f64 {
 pub struct PlacedPanel<'a> {
     /// The panel.
     pub panel: &'a Panel,
+    /// Style of the picture.
+    pub style: &'a PictureStyle,
     /// Horizontal scale.
     pub x: Scale,
     /// Vertical scale.
@@ -61,8 +60,8 @@ fn widest<'a>(rows: &[Vec<PlacedPanel<'a>>], column: usize, of: fn(&PlacedPanel<
 }
 
 /// Places the panels of a picture. Also returns width and height of the sheet, and the lines below the title.
-pub fn lay(picture: &Picture) -> (Vec<Vec<PlacedPanel<'_>>>, (f64, f64), Vec<String>) {
-    let mut rows = scaled(picture);
+pub fn lay<'a>(picture: &'a Picture, style: &'a PictureStyle) -> (Vec<Vec<PlacedPanel<'a>>>, (f64, f64), Vec<String>) {
+    let mut rows = scaled(picture, style);
     let columns = rows.iter().map(Vec::len).max().unwrap_or(0);
     let before: Vec<f64> = (0..columns).map(|k| widest(&rows, k, PlacedPanel::before)).collect();
     let behind: Vec<f64> = (0..columns).map(|k| widest(&rows, k, PlacedPanel::behind)).collect();
@@ -78,10 +77,12 @@ pub fn lay(picture: &Picture) -> (Vec<Vec<PlacedPanel<'_>>>, (f64, f64), Vec<Str
         }
         width = width.max(left);
     }
-    let letters = ((width - 2.0 * MARGIN) / (0.5 * NORMAL)).max(1.0) as usize;
+    let letters = ((width - 2.0 * MARGIN) / (0.5 * style.normal)).max(1.0) as usize;
     let about = textwrap::wrap(&picture.about, letters);
     let about: Vec<String> = about.into_iter().map(|line| line.into_owned()).collect();
     let mut top = match picture.title.is_empty() {
+        // half of a tick label
+        true if style.paper => 0.6 * style.small,
         true => 0.0,
         false => 46.0 + 16.0 * about.len() as f64,
     };
@@ -96,12 +97,16 @@ pub fn lay(picture: &Picture) -> (Vec<Vec<PlacedPanel<'_>>>, (f64, f64), Vec<Str
         }
         top += above + height + below;
     }
-    (rows, (width.ceil(), top.ceil()), about)
+    let size = match style.sheet {
+        Some((width, height)) => (width / style.scale, height / style.scale),
+        None => (width.ceil(), top.ceil()),
+    };
+    (rows, size, about)
 }
 
 /// Panels with their scales. In a column, panels whose horizontal axes have the same name and unit share one range. Of neighbors with equal
 /// axes only one shows the labels.
-fn scaled(picture: &Picture) -> Vec<Vec<PlacedPanel<'_>>> {
+fn scaled<'a>(picture: &'a Picture, style: &'a PictureStyle) -> Vec<Vec<PlacedPanel<'a>>> {
     let points = |panel: &'_ Panel| {
         panel
             .series
@@ -115,6 +120,7 @@ fn scaled(picture: &Picture) -> Vec<Vec<PlacedPanel<'_>>> {
         let alike = column.filter(|other| named(other) == named(panel));
         PlacedPanel {
             panel,
+            style,
             x: panel.x.scale(alike.flat_map(points).map(|p| p.0)),
             y: panel.y.scale(points(panel).into_iter().map(|p| p.1)),
             labelled: [!panel.bare; 2],
@@ -165,8 +171,9 @@ impl<'a> PlacedPanel<'a> {
 
     /// Distance of the name of the vertical axis from the frame.
     pub fn beside(&self) -> f64 {
-        let labels = self.y.ticks.iter().map(|(_, label)| width_of(label, SMALL));
-        (20.0 + 1.1 * labels.fold(0.0, f64::max)).max(52.0)
+        let labels = self.y.ticks.iter().map(|(_, label)| width_of(label, self.style.small));
+        let least = if self.style.paper { 0.0 } else { 52.0 };
+        (20.0 + 1.1 * labels.fold(0.0, f64::max)).max(least)
     }
 
     /// Name of the vertical axis with its unit.
@@ -185,12 +192,13 @@ impl<'a> PlacedPanel<'a> {
 
     /// Room right of the frame.
     fn behind(&self) -> f64 {
-        let names = self.panel.series.iter().map(|one| width_of(&one.name, SMALL));
+        let names = self.panel.series.iter().map(|one| width_of(&one.name, self.style.small));
         let bar = self.panel.bar.as_ref().map_or(0.0, |_| BAR);
         let legend = names.fold(0.0, f64::max);
         bar + match self.panel.legend_beside && legend > 0.0 {
             _ if self.panel.bare => 0.0,
             true => 18.0 + SAMPLE + legend + MARGIN,
+            false if self.style.paper => 14.0,
             false => 24.0,
         }
     }
@@ -200,6 +208,7 @@ impl<'a> PlacedPanel<'a> {
         let groups = if self.panel.x.groups.is_empty() { 0.0 } else { 16.0 };
         match (self.panel.bare, self.labelled[0]) {
             (true, _) => 0.0,
+            (false, true) if self.style.paper => 40.0 + groups,
             (false, true) => 48.0 + groups,
             (false, false) => 14.0,
         }
@@ -232,7 +241,7 @@ impl<'a> PlacedPanel<'a> {
                 down += 5.0 + 14.0 * entry.text.lines().count() as f64;
                 continue;
             }
-            let wide = SAMPLE + width_of(entry.text, SMALL) + 14.0;
+            let wide = SAMPLE + width_of(entry.text, self.style.small) + 14.0;
             if across > 0.0 && self.left + across + wide > width {
                 (across, down) = (0.0, down + 18.0);
             }
@@ -270,7 +279,8 @@ mod tests {
             )
         };
         let picture = Picture::stacked("title".into(), "about", [panel(1.0), panel(3.0)]);
-        let (rows, ..) = lay(&picture);
+        let style = PictureStyle::screen();
+        let (rows, ..) = lay(&picture, &style);
         let [above, below] = [&rows[0][0], &rows[1][0]];
         assert_eq!(above.x, below.x);
         assert_eq!((above.labelled, below.labelled), ([false, true], [true, true]));

@@ -1,10 +1,12 @@
-//! Pictures of a run: plain data to SVG text. One picture per file; absent data give no picture.
+//! Pictures: plain data to SVG text or PDF. One picture per file; absent data give no picture.
 //!
 //! ```text
 //! picture     a picture as data: panels, axes, series, color scales
 //! layout      positions of its panels, labels and legends
 //! drawing     the only code that draws a picture
-//! canvas      lines, rectangles and text, in points, as SVG
+//! canvas      lines, areas and text of a drawing, in points
+//! svg, pdf    a drawing as SVG, and as PDF with its font
+//! style       sizes, fonts and lines of pictures for screens and for papers
 //! colour      color scales, and a palette that every reader can distinguish
 //! ticks       round numbers along an axis, with SI prefixes
 //! labels      labels without overlap
@@ -20,7 +22,10 @@ pub mod colour;
 mod drawing;
 mod labels;
 mod layout;
+pub mod pdf;
 pub mod picture;
+pub mod style;
+mod svg;
 mod ticks;
 
 pub mod cell;
