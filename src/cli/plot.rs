@@ -13,7 +13,7 @@ use crate::output::columns;
 use crate::output::folder::{name_of, replace_picture};
 use crate::output::plot::pdf::PdfFont;
 use crate::output::plot::style::PictureStyle;
-use crate::output::quantity_plot::names::readable;
+use crate::output::quantity_plot::names::for_readers;
 use crate::output::quantity_plot::table::ResultTable;
 use crate::output::quantity_plot::{self, PictureRequest, QuantityPanel};
 
@@ -213,7 +213,7 @@ fn list(asked: &PlotArguments) -> Result<ExitCode> {
     let rows: Vec<[String; 3]> = table
         .numbers()
         .map(|column| {
-            let (words, unit) = readable(&column.name, &column.unit);
+            let (words, unit) = for_readers(&column.name, &column.unit);
             [column.name.clone(), unit, words]
         })
         .collect();

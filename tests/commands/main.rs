@@ -9,6 +9,7 @@ mod interruption;
 mod journals;
 mod names;
 mod output;
+mod plot;
 #[path = "../common/program.rs"]
 mod program;
 mod repeated;

@@ -43,6 +43,7 @@ use crate::study::companion::band::width_at;
 use colour::Colour;
 
 pub use deflection::Deflection;
+pub use layout::width_of;
 pub use pressure::Pressure;
 
 /// A named line over time.

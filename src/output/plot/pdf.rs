@@ -258,12 +258,15 @@ impl PdfContent {
     }
 
     fn path(&mut self, points: &[(f64, f64)]) {
-        for (k, point) in points.iter().enumerate() {
+        let mut last = None;
+        for point in points {
             let (x, y) = self.at(*point);
-            match k {
-                0 => self.content.move_to(x, y),
-                _ => self.content.line_to(x, y),
+            match last {
+                None => self.content.move_to(x, y),
+                Some(at) if at == (x, y) => continue,
+                Some(_) => self.content.line_to(x, y),
             };
+            last = Some((x, y));
         }
     }
 

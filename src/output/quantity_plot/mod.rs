@@ -14,7 +14,7 @@ use std::path::{Path, PathBuf};
 
 use super::folder::name_of;
 use super::plot::canvas::Drawing;
-use super::plot::extent;
+use super::plot::{extent, width_of};
 use super::plot::picture::{Glyph, Panel, Picture, PictureAxis, PictureSeries};
 use super::plot::style::{POINTS_PER_MM, PictureStyle};
 use crate::error::{Error, Result};
@@ -149,8 +149,11 @@ pub fn panels(results: &[PathBuf], asked: &PictureRequest) -> Result<Vec<Quantit
     if asked.together {
         all = vec![together(all)?];
     }
-    let empty = |panel: &&QuantityPanel| panel.curves.iter().all(|curve| curve.points.iter().all(|p| !p.0.is_finite() || !p.1.is_finite()));
-    match all.iter().find(empty) {
+    for panel in &mut all {
+        let drawn = |curve: &NamedCurve| curve.points.iter().any(|p| p.0.is_finite() && p.1.is_finite());
+        panel.curves.retain(drawn);
+    }
+    match all.iter().find(|panel| panel.curves.is_empty()) {
         Some(panel) => Err(Error::Usage(format!(
             "{} over {}: nothing to draw within this range",
             panel.y.0, panel.x.0
@@ -229,7 +232,7 @@ pub fn drawing(all: &[QuantityPanel], style: &PictureStyle, (width_mm, height_mm
         size.0 += width - wide;
         size.1 = match height_mm {
             Some(height) => (height * POINTS_PER_MM / style.scale - besides) / all.len() as f64,
-            None => size.0 * shape_of(all),
+            None => (size.0 * shape_of(all)).max(longest_name(all, style)),
         };
         sheet.1 = besides + size.1 * all.len() as f64;
     }
@@ -251,6 +254,12 @@ pub fn drawing(all: &[QuantityPanel], style: &PictureStyle, (width_mm, height_mm
     };
     let drawing = picture(all, &sheet, size).drawing(&sheet);
     drawing.ok_or_else(|| Error::Usage("nothing to draw".into()))
+}
+
+/// Height that holds the longest name of a vertical axis with its unit.
+fn longest_name(all: &[QuantityPanel], style: &PictureStyle) -> f64 {
+    let length = |panel: &QuantityPanel| width_of(&format!("{} [{}]mm", panel.y.0, panel.y.1), style.normal);
+    all.iter().map(length).fold(0.0, f64::max)
 }
 
 /// Height of a panel relative to its width.

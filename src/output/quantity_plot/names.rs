@@ -1,13 +1,25 @@
 //! Names of columns as readers of a paper expect them.
 
+use crate::case::readable;
 use crate::discrete::quantities::probes::{key, tip_of_beam};
 use crate::discrete::quantities::{BeamField, Interest, Observable};
 use crate::study::sweep::unit::unit;
 
+/// Parts of a complex number and its measures, as they precede the name of an output.
+const PARTS: [&str; 6] = ["real", "imaginary", "amplitude", "phase", "error", "mean power"];
+
 /// Name and unit of a column: `tip deflection u₁` and `m` for the heading `tip_u1 [m]`. A name without a unit may end with it.
-pub fn readable(name: &str, own_unit: &str) -> (String, String) {
+pub fn for_readers(name: &str, own_unit: &str) -> (String, String) {
     if let Some(one) = Observable::named(name) {
         return (observable(one), own_unit.into());
+    }
+    let part = PARTS.iter().find_map(|part| Some((part, name.strip_prefix(part)?.strip_prefix(' ')?)));
+    if let Some((part, output)) = part {
+        let unit = if own_unit == "deg" { "°" } else { own_unit };
+        return (format!("{part} of {}", spoken(output)), unit.into());
+    }
+    if name.starts_with('/') {
+        return (readable::pointer_name(name), readable::pointer_unit(name).into());
     }
     let of = if own_unit == "1" { unit(name) } else { own_unit };
     let bare = match own_unit {
@@ -19,13 +31,13 @@ pub fn readable(name: &str, own_unit: &str) -> (String, String) {
 
 /// Name of a field at an instant.
 pub fn field(one: BeamField) -> String {
-    let symbol = match one {
-        BeamField::U1 => " u₁",
-        BeamField::U3 => " u₃",
-        _ => "",
-    };
-    let words = one.about().split(',').next().unwrap_or_default();
-    format!("{words}{symbol}")
+    match one {
+        BeamField::U1 => "displacement u₁".into(),
+        BeamField::U3 => "displacement u₃".into(),
+        BeamField::V1 => "velocity v₁".into(),
+        BeamField::V3 => "velocity v₃".into(),
+        other => without_unit(other.name(), other.unit()).replace('_', " "),
+    }
 }
 
 /// Description of a quantity, with its symbol if its label has one: `tip deflection u₁`.
@@ -35,10 +47,8 @@ fn observable(one: Observable) -> String {
     symbol.map_or_else(|| words.into(), |symbol| format!("{words} {symbol}"))
 }
 
-/// Words of a name: the last key of a pointer, figures after their quantity, indices of displacements lowered.
+/// Words of a name: figures after their quantity, indices of displacements lowered.
 fn spoken(name: &str) -> String {
-    let last = name.rsplit('/').find(|part| !part.is_empty() && part.parse::<usize>().is_err());
-    let name = last.unwrap_or(name);
     if let Some((beam, what)) = tip_of_beam(name) {
         return format!("{} of {beam}", lowered(&format!("tip {what}")));
     }
@@ -79,7 +89,7 @@ mod tests {
     #[test]
     fn columns_have_names_for_readers() {
         let of = |name, unit| {
-            let (words, unit) = readable(name, unit);
+            let (words, unit) = for_readers(name, unit);
             format!("{words} [{unit}]")
         };
         assert_eq!(of("tip_u1", "m"), "tip deflection u₁ [m]");
@@ -87,8 +97,10 @@ mod tests {
         assert_eq!(of("middle_u1", "m"), "middle u₁ [m]");
         assert_eq!(of("left.tip_u3", "m"), "tip u₃ of left [m]");
         assert_eq!(of("bladder__3_pressure", "Pa"), "bladder −3 pressure [Pa]");
-        assert_eq!(of("/network/chains/0/ends/0/pressure_pa", "1"), "pressure [Pa]");
+        assert_eq!(of("/network/chains/0/ends/0/pressure_pa", "1"), "ends 0: pressure [Pa]");
         assert_eq!(of("tip_u1_m.window_max_abs", "1"), "tip deflection, window max abs [m]");
         assert_eq!(of("wave number", "rad/cell"), "wave number [rad/cell]");
+        assert_eq!(of("phase tip_u3_m", "deg"), "phase of axial tip displacement [°]");
+        assert_eq!(of("imaginary part", "1"), "imaginary part [1]");
     }
 }

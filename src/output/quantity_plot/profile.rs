@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use super::names::{field, readable};
+use super::names::{field, for_readers};
 use super::{NamedCurve, QuantityPanel};
 use crate::case::nearest;
 use crate::discrete::quantities::{BeamField, FieldAxis, PlacedNodes};
@@ -173,7 +173,7 @@ fn run(dir: &Path, quantities: &[String], at: &[f64], label: &str) -> Result<Vec
             NamedCurve::new(name_of(k), points)
         });
         let x_name = match one.axis() {
-            FieldAxis::Network => ("network coordinate X_f".into(), "1".into()),
+            FieldAxis::Network => ("network coordinate".into(), "1".into()),
             _ => along(),
         };
         panels.push(QuantityPanel::curves(x_name, (field(one), one.unit().into()), curves.collect()));
@@ -243,7 +243,7 @@ fn modes(dir: &Path, quantities: &[String], at: &[f64], label: &str) -> Result<V
             let values = a.iter().zip(&phase).map(|(a, p)| a * (p - start).cos() / if size > 0.0 { size } else { 1.0 });
             NamedCurve::new(joined(label, format!("mode {}", k + 1)), theta.iter().copied().zip(values).collect())
         });
-        let y = readable(name, "m").0;
+        let y = for_readers(name, "m").0;
         panels.push(QuantityPanel::curves(along(), (format!("{y} / largest"), "1".into()), curves.collect()));
     }
     Ok(panels)

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use super::QuantityPanel;
-use super::names::readable;
+use super::names::for_readers;
 use crate::case::nearest;
 use crate::discrete::quantities::probes::key;
 use crate::error::{Error, Result};
@@ -12,6 +12,7 @@ use crate::output::error_band;
 use crate::output::folder::{HISTORY, SUMMARY, fault, open};
 use crate::output::kind::FolderKind;
 use crate::output::summary;
+use crate::output::sweep::pictures;
 use crate::study::companion::band::width_at;
 
 /// Number of stretches of a curve whose extremes are drawn: more than the dots of a printer across a page.
@@ -213,6 +214,10 @@ impl<'a> ResultTable<'a> {
         if !shown.is_empty() {
             return shown;
         }
+        let preferred = pictures::FIRST.iter().find_map(|name| self.columns.iter().position(|column| column.name == *name && !column.text));
+        if let Some(k) = preferred {
+            return vec![k];
+        }
         let after = self.columns.iter().position(|column| ["status", "reason"].contains(&column.name.as_str()));
         let first = after.or_else(|| self.abscissa()).map_or(0, |k| k + 1);
         let next = (first..self.columns.len()).find(|k| !self.columns[*k].text);
@@ -245,7 +250,7 @@ impl<'a> ResultTable<'a> {
         let (numbers, groups) = self.read(&wanted, within, x)?;
         let column = |k: usize| wanted.iter().position(|own| *own == k).map_or(&[][..], |at| numbers[at].as_slice());
         let band = error_band::read(self.dir).unwrap_or_default();
-        let plain_x = readable(&self.columns[x].name, &self.columns[x].unit);
+        let plain_x = for_readers(&self.columns[x].name, &self.columns[x].unit);
         let own = over.is_none();
         let names = distinct(&groups);
         let panels = quantities.iter().map(|&k| {
@@ -289,7 +294,7 @@ impl<'a> ResultTable<'a> {
             });
             QuantityPanel {
                 x: plain_x.clone(),
-                y: readable(&of.name, &of.unit),
+                y: for_readers(&of.name, &of.unit),
                 curves: curves.collect(),
                 marks: self.known.marks,
                 logarithmic: match own {

@@ -5,6 +5,7 @@ use slcbeam_section::cell::bladders;
 use slcbeam_section::coefficients::Options;
 use slcbeam_section::geometry::outline::Outline;
 use slcbeam_section::input::Section;
+use slcbeam_section::picture::Picture;
 
 use super::base64;
 use crate::case::Case;
@@ -49,9 +50,16 @@ fn pictures(section: &Section, ending: &str) -> Vec<Value> {
             "title": format!("{name}{ending}"),
             "picture": base64::svg(drawn.as_bytes()),
             "about": format!("1 {unit}, displacements × {}", significant(factor, 1)),
+            "nodes": base64::numbers(nodes(&found, load)),
         }))
     };
     LOADS.into_iter().enumerate().filter_map(one).collect()
+}
+
+/// Place and displacement of each node, both along and high [m].
+fn nodes(found: &Picture, load: usize) -> impl Iterator<Item = f64> {
+    let moved = found.displacements_m.get(load).into_iter().flatten();
+    found.nodes_m.iter().zip(moved).flat_map(|(place, u)| [place[0], place[1], u[0], u[1]])
 }
 
 /// Outlines of an upper and a lower bladder about the middle of a pitch on the mid-plane, points `[along, high]` [m].

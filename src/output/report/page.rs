@@ -12,11 +12,12 @@ const STYLES: [&str; 4] = [
 ];
 
 /// Scripts in the order of execution: each uses those before it.
-const SCRIPTS: [&str; 19] = [
+const SCRIPTS: [&str; 20] = [
     include_str!("page/base.js"),
     include_str!("page/colour.js"),
     include_str!("page/clock.js"),
     include_str!("page/plot.js"),
+    include_str!("page/downloads.js"),
     include_str!("page/wires.js"),
     include_str!("page/scene.js"),
     include_str!("page/beam.js"),

@@ -15,7 +15,7 @@ const DRAWN: usize = 2000;
 /// Largest number of figures drawn.
 const FIGURES: usize = 4;
 /// Figures that can be drawn, in order of preference; only those that exist and vary are drawn.
-const FIRST: [&str; 13] = [
+pub const FIRST: [&str; 13] = [
     "harvested_power_w.mean",
     "harvested_energy_j.final",
     "efficiency.window",

@@ -2,6 +2,7 @@
 
 mod browser;
 mod common;
+mod downloads;
 mod folders;
 mod kinds;
 mod run;

@@ -152,7 +152,11 @@ function showAnimation(host, scene, motion, clock) {
     const box = el("input", { type: "checkbox", on: { change: () => ((follow = box.checked), again()) } });
     controls.append(el("label", {}, box, "Follow the root"));
   }
-  host.append(canvas);
+  const now = () => {
+    const [f, n] = [clock.index, motion.nodes];
+    return Array.from(motion.theta, (place, k) => [place, motion.u1[f * n + k], motion.u3[f * n + k]]);
+  };
+  host.append(canvas, downloads("Motion at this instant", () => canvasDrawing(canvas), () => [["theta [m]", `u1 at ${csvCell(clock.time)} s [m]`, "u3 [m]"], now()]));
   if (scale) host.append(colourBar(scale.limit, scale.most, "Pa"));
   host.append(controls, note);
   drawn(again);

@@ -182,6 +182,7 @@ function painted(canvas, height, draw) {
   const context = canvas.getContext("2d");
   context.setTransform(ratio, 0, 0, ratio, 0, 0);
   context.clearRect(0, 0, width, height);
+  canvas.shown = { draw, width, height };
   draw(context, width, height);
 }
 

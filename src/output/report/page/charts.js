@@ -102,6 +102,9 @@ function showMarks(part) {
     return button;
   });
   const card = figure(part.title, part.about, el("div", { class: "chips", role: "group", "aria-label": "Series" }, chips), slot, readout);
+  const shown = () => part.series.flatMap((s, k) => (off.has(k) ? [] : [{ label: s.name, colour: named(s.colour), dash: s.dash?.split?.(" ") }]));
+  const rows = () => part.series.flatMap((s) => s.points.map(([x, y, words]) => [s.name, x, y, words]));
+  card.append(downloads(part.title, () => withLegend(slot.querySelector("svg").cloneNode(true), shown()), () => [["series", withUnit(part.x.name, part.x.unit), withUnit(part.y.name, part.y.unit), "remark"], rows()]));
   return { card, draw };
 }
 
@@ -129,6 +132,21 @@ function showBars(part) {
   list.replaceChildren(...part.rows.map(line));
   const scale = el("div", { class: "barscale", "aria-hidden": "true" }, logMarks(low, high, 4, "").map(([v, text]) => el("span", { style: `left:${(100 * (v - low)) / (high - low)}%`, text })));
   const card = figure(part.title, part.about, el("div", { class: "chips", role: "group", "aria-label": "Order" }, buttons), list, scale);
+  const drawing = () => {
+    const x = { low, high, unit: "", name: "share", marks: logMarks(low, high, 4, "") };
+    const height = 24 * part.rows.length + 60;
+    const marks = part.rows.map((r, k) => [part.rows.length - k - 0.5, r.name]);
+    const plot = chart(640, height, x, { low: 0, high: part.rows.length, unit: "", name: "", marks }, part.title, 170);
+    const at = (v) => plot.px(Math.min(Math.max(Math.log10(v), low), high));
+    part.rows.forEach((r, k) => {
+      const y = plot.py(part.rows.length - k - 0.5);
+      if (r.value > 0) plot.area.append(svg("rect", { x: plot.px(low), y: y - 6, width: at(r.value) - plot.px(low), height: 12, style: `fill:${named(0)}` }));
+      if (r.ring > 0) plot.area.append(svg("circle", { cx: at(r.ring), cy: y, r: 4.5, style: `fill:none;stroke:${css("--ink")};stroke-width:1.5` }));
+    });
+    plot.area.append(svg("path", { d: `M${at(part.limit.at)} 0V${height}`, "stroke-dasharray": "3 4", style: `stroke:${css("--faint")}` }));
+    return plot.node;
+  };
+  card.append(downloads(part.title, drawing, () => [["name", "change [1]", "estimate [1]", "remark"], part.rows.map((r) => [r.name, r.value, r.ring, r.words])]));
   return { card, draw: null };
 }
 

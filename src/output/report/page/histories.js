@@ -52,6 +52,9 @@ function onePanel(host, group, times, series, height, title) {
   const axis = { stroke: soft, grid: { stroke: line, width: 1 }, ticks: { stroke: line, width: 1 }, font: "12px ui-sans-serif, system-ui, sans-serif" };
   const holder = el("div", { class: "panel" });
   host.append(holder);
+  // a change of the theme paints the panels again: colours are those of the newest
+  const [index, parts] = [group.plots.length, [times, series, title, group.axis]];
+  const drawing = () => panelDrawing(...group.plots[index].parts, group.range || group.full);
   const shown = (u, v) => (v === null || v === undefined ? "–" : significant(v, 5));
   const { label: xlabel, name, logarithmic } = group.axis;
   const x = { time: false, min: group.range?.[0], max: group.range?.[1], ...(logarithmic ? { distr: 3, range: (u, low, high) => [low, high] } : {}) };
@@ -74,7 +77,8 @@ function onePanel(host, group, times, series, height, title) {
   const mark = el("div", { class: "nowline" });
   plot.over.append(mark);
   plot.over.addEventListener("dblclick", () => group.zoom(...group.full));
-  return { plot, line: mark, holder };
+  holder.append(downloads(title, drawing, () => panelTable(...parts)));
+  return { plot, line: mark, holder, parts };
 }
 
 /** Range of the vertical axis, with the bands that are in view. */

@@ -4,7 +4,12 @@
 function showCell() {
   if (!data.cell?.length) return;
   const body = section("cell", "The section under its loads", "One pitch of the beam from the side, as its coefficients are computed: at rest in grey, deformed in colour. Displacements are linear in the loads and are drawn magnified by the factor given.");
-  body.append(el("div", { class: "grid4" }, ...data.cell.map(pictureCard)));
+  body.append(el("div", { class: "grid4" }, ...data.cell.map((part) => pictureCard({ ...part, rows: () => [["along [m]", "high [m]", "displacement along [m]", "displacement high [m]"], rowsOf(floats(part.nodes), 4)] }))));
+}
+
+/** Numbers in rows of equal length. */
+function rowsOf(numbers, length) {
+  return Array.from({ length: numbers.length / length }, (_, k) => numbers.subarray(k * length, (k + 1) * length));
 }
 
 /** Uncertainty of the figures from uncertain numbers. */
@@ -34,6 +39,9 @@ function showScene(describe) {
   const scale = (thicker) => (note.textContent = `${thicker > 1.01 ? `To scale along the beam${scene.beams ? "s" : ""}; its height is drawn ${shortest(thicker)} times larger.` : "To scale."} ${scene.beams ? "z to the right, x up; bladders are numbered along each beam. Dots are rigid joints, open circles hinges, squares elastic joints and sliders." : "Root on the left, tip on the right."}${parts}`);
   body.append(card);
   const drawing = drawScene(scene, host, readout, describe || ((b, layout) => bladderWords(b, layout, scene)), scale);
+  const bladders = () => drawing.layout.bladders.filter((b) => !b.absent).map((b) => [labelText(b.label), b.row > 0 ? "upper" : "lower", b.network + 1, b.a, b.e, b.size[0], b.size[1]]);
+  const table = half ? () => [["bladder", "row", "network", "place along [m]", "place across [m]", "width [m]", "height [m]"], bladders()] : null;
+  card.append(downloads("Structure", () => host.querySelector("svg"), table));
   drawn(() => legend.replaceChildren(...sceneWords(scene, drawing.layout).map(([mark, strong, text]) => el("li", {}, mark, el("span", {}, el("b", { text: strong }), ` ${text}`)))));
   return drawing;
 }

@@ -54,10 +54,12 @@ function showMap(host, map, motion, clock) {
   const holder = el("div", { class: "map", tabindex: "0", role: "group", "aria-label": `${map.title} over time and place. Arrow keys move the time.` }, canvas, now);
   const readout = el("span", { text: "point at the map to read it" });
   const [t0, t1] = [motion.times[0], motion.times.at(-1)];
+  const places = Array.from({ length: map.rows }, (_, k) => k);
+  const table = () => [["t [s]", ...places.map((k) => withUnit(`${map.title.replace(/,$/, "")} at ${map.place(k)}`, map.unit))], Array.from(motion.times, (t, f) => [t, ...places.map((k) => map.at(f, k))])];
   const card = el("div", { class: "figure" },
     el("div", { class: "maphead" }, el("h3", { text: map.title }), readout), holder,
     el("div", { class: "mapaxis" }, el("span", { text: timeText(t0) }), el("span", { text: "time →   (bottom: root, top: tip)" }), el("span", { text: timeText(t1) })),
-    colourBar(scale.limit, scale.most, map.unit), el("p", { class: "caption", text: map.about }));
+    colourBar(scale.limit, scale.most, map.unit), el("p", { class: "caption", text: map.about }), downloads(map.title, () => mapDrawing(map, motion, scale), table));
   host.append(card);
   const picture = document.createElement("canvas");
   const place = (event) => {

@@ -22,8 +22,8 @@ function tickTexts(all, factor) {
  * A chart of given height. `x` and `y` are {low, high, unit, name}, with `marks` of [value, text] where these are not round numbers; returns {node, place(x, y), area, clear()} whose
  * `area` takes what is drawn within the frame.
  */
-function chart(width, height, x, y, label) {
-  const box = { left: 62, right: 16, top: 12, bottom: 44 };
+function chart(width, height, x, y, label, left = 62) {
+  const box = { left, right: 16, top: 12, bottom: 44 };
   const node = svg("svg", { class: "fig", width, height, viewBox: `0 0 ${width} ${height}`, role: "img", "aria-label": label });
   const [w, h] = [width - box.left - box.right, height - box.top - box.bottom];
   const room = (a) => (a.high > a.low ? a.high - a.low : 1);

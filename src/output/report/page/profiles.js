@@ -36,7 +36,10 @@ function showProfiles(host, motion, clock, scene) {
     const wide = all[1] - all[0] > 2 * (inside[1] - inside[0]);
     curve.range = wide ? inside : all;
     const beyond = wide ? " At other times it may leave the picture." : "";
-    host.append(figure(curve.title, curve.about(largest(part)) + beyond, slot));
+    const heading = (f) => `${curve.name} at ${csvCell(motion.times[f])} s [${curve.unit}]`;
+    const rows = () => Array.from({ length: curve.width }, (_, k) => [curve.x[k], ...cycle.map((f) => curve.values[f * curve.width + k])]);
+    const table = () => [[withUnit(curve.axis.name, curve.axis.unit), ...cycle.map(heading)], rows()];
+    host.append(figure(curve.title, curve.about(largest(part)) + beyond, slot, downloads(curve.title, () => slot.querySelector("svg"), table)));
     let plot = null;
     const paint = () => {
       const [low, high] = roomy(curve.range, curve.floor);

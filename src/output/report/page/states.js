@@ -37,6 +37,8 @@ function showPath() {
     const note = factor.across === 1 ? "To scale, nothing exaggerated." : `${nodes ? "Displacements" : "Deflection across"} drawn ${count(factor.across)} times larger.`;
     body.append(figure(null, `${note} The faint shade is where the other states of the path lie.`, canvas, el("div", { class: "controls" }, el("label", { style: "flex:1 1 200px" }, "State", slider)), words));
     slider.style.flex = "1 1 auto";
+    const state = () => Array.from(theta, (place, k) => [place, x[Number(slider.value) * n + k], z[Number(slider.value) * n + k]]);
+    canvas.after(downloads("The state", () => canvasDrawing(canvas), () => [["theta [m]", "x [m]", "z [m]"], state()]));
     const columns = (path?.headings || []).map((h) => /^(.*) \[(.*)\]$/.exec(h)).map((m) => (m ? [m[1], m[2]] : null));
     const paint = () => {
       const view = viewOf(Math.max(canvas.clientWidth, 260), bounds, 460);
@@ -77,7 +79,7 @@ function loadCurves(body, path, columns, follow) {
     if (!(largest(values) > 1e-12)) continue;
     const share = path.rows.map((r) => r[0]);
     const slot = el("div");
-    grid.append(figure(title, `At the end of the path ${quantity(values.at(-1), columns[k][1])}. The ring is the state shown above.${data.events?.length ? " Dashed: where something happens on the way." : ""}`, slot));
+    grid.append(figure(title, `At the end of the path ${quantity(values.at(-1), columns[k][1])}. The ring is the state shown above.${data.events?.length ? " Dashed: where something happens on the way." : ""}`, slot, downloads(`${title} over load factor`, () => slot.querySelector("svg"), () => [["load_factor [1]", withUnit(name, columns[k][1])], share.map((s, i) => [s, values[i]])])));
     let mark = null;
     let plot = null;
     let at = path.rows.length - 1;
@@ -135,6 +137,12 @@ function movingShapes(body, shapes, one) {
   const button = showPlaying(el("button", { type: "button", class: "main" }), playing);
   const slider = el("input", { type: "range", min: 0, max: 100, value: 0, "aria-label": "Phase", style: "flex:1 1 160px", "data-keys": "" });
   body.append(figure(null, null, el("div", { class: "controls" }, el("label", {}, one.name, select), button, slider), canvas, words));
+  const table = () => {
+    const k = Number(select.value);
+    const columns = [["u1 amplitude [m]", a1], ["u1 phase [rad]", f1], ["u3 amplitude [m]", a3], ["u3 phase [rad]", f3]];
+    return [["theta [m]", ...columns.map((c) => c[0])], Array.from(theta, (place, i) => [place, ...columns.map((c) => c[1][k * n + i])])];
+  };
+  canvas.after(downloads(`Moving shape, ${one.name.toLowerCase()}`, () => canvasDrawing(canvas), table));
   const bounds = straightBounds(scene);
   const reach = nodes ? 0.13 * Math.max(bounds.x1 - bounds.x0, bounds.y1 - bounds.y0) : 0.13 * scene.length;
   bounds.x0 -= nodes ? reach + 0.6 * scene.height : 0.02 * scene.length;
@@ -209,7 +217,14 @@ function showModes() {
   }
   if (data.passivity) document.getElementById("main").append(figure("Passivity of the coupling", data.passivity));
   if (data.table) section("table", "Every mode", null).append(tableCard({ ...data.table, title: null, name: data.table.title, about: "Undrained: the same shape with every bladder sealed. Drained: with one pressure in each network. The growth rate is negative where the motion dies away." }));
-  if (data.picture) section("picture", "All shapes at once", null).append(pictureCard({ picture: data.picture, title: null, about: "Displacement along the beam of every mode, with the pressures of the bladders." }));
+  const shapesTable = () => {
+    const values = (name) => floats(shapes[name]);
+    const theta = values("theta_m");
+    const parts = ["u1_amplitude_m", "u1_phase_rad", "u3_amplitude_m", "u3_phase_rad"].map((name) => [name, values(name)]);
+    const columns = data.modes.slice(0, shapes.most).flatMap((_, m) => parts.map(([name, of]) => [`mode ${m + 1} ${name.replace(/_(m|rad)$/, " [$1]").replace("_", " ")}`, of, m]));
+    return [["theta [m]", ...columns.map((c) => c[0])], Array.from(theta, (place, i) => [place, ...columns.map(([, of, m]) => of[m * theta.length + i])])];
+  };
+  if (data.picture) section("picture", "All shapes at once", null).append(pictureCard({ picture: data.picture, rows: shapes && shapesTable, title: null, about: "Displacement along the beam of every mode, with the pressures of the bladders." }));
   if (data.scene) showScene();
 }
 
@@ -250,6 +265,9 @@ function showResponse() {
     answerSection().append(card);
     group.begin();
   }
+  const responses = curves.all.map((c) => [c.label, floats(c.real), floats(c.imag)]);
+  const headings = responses.flatMap(([label]) => [`real part of ${label} [output/input]`, `imaginary part of ${label} [output/input]`]);
+  for (const part of data.figures || []) part.rows = () => [["f [Hz]", ...headings], Array.from(hz, (f, k) => [f, ...responses.flatMap(([, re, im]) => [re[k], im[k]])])];
   let chooseShape = null;
   if (shapes) {
     const body = section("shapes", data.scene?.beams ? "Motion of the structure" : "Motion of the beam", "The shape of the steady motion at peaks and at the frequencies of --frequency, over one cycle of the input. Amplitudes are drawn as large as can be seen.");

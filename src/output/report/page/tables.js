@@ -97,6 +97,11 @@ function drawing(source, title) {
   return document.importNode(svg, true);
 }
 
+/** Function that returns headings and rows of a table of the page. */
+function tableOf(table) {
+  return table ? () => [table.headings, table.rows] : null;
+}
+
 /** A picture made by the program, on white. */
 function pictureCard(part) {
   if (!part.picture) return null;
@@ -108,5 +113,7 @@ function pictureCard(part) {
   // On a narrow screen its words can be read and it scrolls; the whole picture is seen when it is asked for.
   const whole = el("button", { type: "button", class: "whole", text: "Whole picture", "aria-pressed": "false" });
   whole.addEventListener("click", () => whole.setAttribute("aria-pressed", String(plate.classList.toggle("fit"))));
-  return figure(part.title, part.about, sideways(plate, "The picture is wider than the screen: scroll it sideways."), whole);
+  const table = part.rows || tableOf(part.table || data.table || data.tables?.[0]);
+  const own = plate.querySelector("svg") && downloads(part.title || part.about || "Picture", () => plate.querySelector("svg"), table);
+  return figure(part.title, part.about, sideways(plate, "The picture is wider than the screen: scroll it sideways."), whole, own);
 }
