@@ -288,6 +288,9 @@ def test_results_are_compared_and_exported(tmp_path):
     assert told["format"]
     slcbeam.export(tmp_path / "a", format="csv", every=5)
     assert (tmp_path / "a/csv/u1_m.csv").is_file()
+    drawn = slcbeam.plot(tmp_path / "a", tmp_path / "b", quantity="tip_u1", label=["0.1 m", "0.11 m"], out=tmp_path / "tip.pdf")
+    assert drawn["panels"][0]["y_unit"] == "m" and drawn["panels"][0]["curves"] == ["0.1 m", "0.11 m"]
+    assert (tmp_path / "tip.pdf").read_bytes().startswith(b"%PDF-1.4")
 
 
 def test_the_program_comes_with_the_package(tmp_path):

@@ -117,7 +117,9 @@ pub fn plot(asked: &PlotArguments) -> Result<ExitCode> {
     if let (Some(from), Some(to)) = (asked.from, asked.to)
         && from >= to
     {
-        return Err(Error::Usage(format!("--from {from} --to {to}: --from must be below --to")));
+        return Err(Error::Usage(format!(
+            "--from {from} --to {to}: --from must be below --to"
+        )));
     }
     let request = PictureRequest {
         quantities: asked.quantities.clone(),
@@ -174,7 +176,13 @@ fn default_path(asked: &PlotArguments) -> PathBuf {
     let mut name = whole.as_deref().map_or_else(String::new, name_of);
     for quantity in &asked.quantities {
         name += "-";
-        name.extend(quantity.chars().map(|c| if c.is_alphanumeric() || "_-.".contains(c) { c } else { '-' }));
+        name.extend(quantity.chars().map(|c| {
+            if c.is_alphanumeric() || "_-.".contains(c) {
+                c
+            } else {
+                '-'
+            }
+        }));
     }
     PathBuf::from(format!("{name}.svg"))
 }
@@ -191,14 +199,26 @@ fn answer(asked: &PlotArguments, path: &Path, bytes: usize, panels: &[QuantityPa
         return super::print(&format!("{all:#}\n"));
     }
     let named = |panel: &QuantityPanel| match panel.y.0.as_str() {
-        "" => panel.curves.iter().map(|curve| curve.label.as_str()).collect::<Vec<_>>().join(", "),
+        "" => panel
+            .curves
+            .iter()
+            .map(|curve| curve.label.as_str())
+            .collect::<Vec<_>>()
+            .join(", "),
         name => name.to_string(),
     };
     let drawn: Vec<String> = panels.iter().map(named).collect();
     let over = panels.first().map_or("", |panel| panel.x.0.as_str());
-    let mut text = format!("{}: {} over {over}, {width} x {height} mm\n", path.display(), drawn.join("; "));
+    let mut text = format!(
+        "{}: {} over {over}, {width} x {height} mm\n",
+        path.display(),
+        drawn.join("; ")
+    );
     if asked.quantities.is_empty() && asked.at.is_empty() {
-        let dir = asked.results.first().map_or_else(String::new, |dir| dir.display().to_string());
+        let dir = asked
+            .results
+            .first()
+            .map_or_else(String::new, |dir| dir.display().to_string());
         text += &format!("other quantities: slcbeam plot {dir} --list\n");
     }
     super::print(&text)
@@ -219,7 +239,9 @@ fn list(asked: &PlotArguments) -> Result<ExitCode> {
         .collect();
     super::print(&match asked.json {
         true => {
-            let all = rows.iter().map(|[name, unit, words]| json!({"quantity": name, "unit": unit, "name": words}));
+            let all = rows
+                .iter()
+                .map(|[name, unit, words]| json!({"quantity": name, "unit": unit, "name": words}));
             format!("{:#}\n", all.collect::<serde_json::Value>())
         }
         false => columns::table("<quantity | <unit | <name", &rows),

@@ -134,18 +134,18 @@ impl FolderKind {
         }
     }
 
-    /// Determines the kind of a result folder.
+    /// Determines the kind of a result folder, for `action`.
     ///
     /// # Errors
     ///
     /// The folder does not exist or contains no result; the message lists identifying files and a result nearby.
-    pub fn find(dir: &Path) -> Result<Self> {
+    pub fn find(action: &'static str, dir: &Path) -> Result<Self> {
         if let Some(kind) = Self::within(dir) {
             return Ok(kind);
         }
         if dir.is_file() {
             return Err(fault(
-                "report on",
+                action,
                 dir,
                 io::Error::new(io::ErrorKind::NotADirectory, format!("it {}", file(dir))),
             ));
@@ -157,7 +157,7 @@ impl FolderKind {
             }
             false => NOWHERE.into(),
         };
-        Err(unfit("report on", dir, what, &|_| true))
+        Err(unfit(action, dir, what, &|_| true))
     }
 
     /// Checks that a folder contains a result of one of these commands, for `action`.

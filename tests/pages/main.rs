@@ -85,6 +85,7 @@ fn shortened(line: &str) -> Option<String> {
         "podman",
         "cargo",
         "export",
+        "plot",
         "git",
         "pip",
         "python",

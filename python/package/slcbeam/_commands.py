@@ -403,6 +403,19 @@ def export(folder: str | os.PathLike[str], **options: Any) -> None:
     _slcbeam.command(["export", str(place(folder)), *_words(options)])
 
 
+def plot(*results: str | os.PathLike[str], **options: Any) -> dict[str, Any]:
+    """Draws quantities of results as SVG or PDF for papers (``slcbeam plot``).
+
+    :param results: folders of one kind.
+    :param options: ``quantity="tip_u1,max_pressure"``, ``at="0.1,0.2"``, ``columns=2``, ``out="tip.pdf"``, ``force=True``.
+    :return: path, size and panels of the picture.
+    """
+    words = ["plot", *(str(place(one)) for one in results), *_words(options)]
+    printed, _, _ = _slcbeam.command([*words, "--json"])
+    drawn: dict[str, Any] = json.loads(printed)
+    return drawn
+
+
 def explain(what: str) -> list[dict[str, Any]]:
     """Explains a message, a key, a column, a figure, a word or a symbol (``slcbeam explain``).
 

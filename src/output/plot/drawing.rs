@@ -140,7 +140,11 @@ impl PlacedPanel<'_> {
             let at = self.place(0.0, self.y.share(*y)).1;
             canvas.line(&[(left - 4.0 * outwards, at), (left, at)], FRAME);
             if self.labelled[1] && room.claim((left, at)) {
-                canvas.text((left - 7.0, at), label, TextStyle::new(self.style.small, TextAnchor::Right));
+                canvas.text(
+                    (left - 7.0, at),
+                    label,
+                    TextStyle::new(self.style.small, TextAnchor::Right),
+                );
             }
         }
         let words = TextStyle::new(self.style.normal, TextAnchor::Centre);
@@ -152,7 +156,11 @@ impl PlacedPanel<'_> {
         let groups = &self.panel.x.groups;
         let down = if groups.is_empty() { 0.0 } else { 16.0 };
         let small = TextStyle::new(self.style.small, TextAnchor::Centre);
-        let longest = |all: &[(f64, String)]| all.iter().map(|(_, text)| width_of(text, self.style.small)).fold(4.0, f64::max);
+        let longest = |all: &[(f64, String)]| {
+            all.iter()
+                .map(|(_, text)| width_of(text, self.style.small))
+                .fold(4.0, f64::max)
+        };
         let mut room = LabelRoom::new((0.85 * longest(groups), self.style.small));
         for (x, label) in groups {
             let at = (self.at((*x, 0.0)).0, bottom + 13.0);
@@ -189,7 +197,11 @@ impl PlacedPanel<'_> {
         for (x, label) in &scale.ticks {
             let at = self.bottom() - self.panel.size.1 * scale.share(*x);
             canvas.line(&[(right, at), (right + 4.0, at)], FRAME);
-            canvas.text((right + 7.0, at), label, TextStyle::new(self.style.small, TextAnchor::Left));
+            canvas.text(
+                (right + 7.0, at),
+                label,
+                TextStyle::new(self.style.small, TextAnchor::Left),
+            );
         }
         let words = TextStyle::new(self.style.small, TextAnchor::Left);
         canvas.text((left - 4.0, self.top - 12.0), scale.named(&bar.axis.name).trim(), words);

@@ -192,7 +192,11 @@ impl<'a> PlacedPanel<'a> {
 
     /// Room right of the frame.
     fn behind(&self) -> f64 {
-        let names = self.panel.series.iter().map(|one| width_of(&one.name, self.style.small));
+        let names = self
+            .panel
+            .series
+            .iter()
+            .map(|one| width_of(&one.name, self.style.small));
         let bar = self.panel.bar.as_ref().map_or(0.0, |_| BAR);
         let legend = names.fold(0.0, f64::max);
         bar + match self.panel.legend_beside && legend > 0.0 {

@@ -56,7 +56,11 @@ impl PdfFont {
                 "--font {path}: expected a TrueType font (.ttf) for a PDF"
             )));
         };
-        let named = face.names().into_iter().find(|name| name.name_id == 6).and_then(|name| name.to_string());
+        let named = face
+            .names()
+            .into_iter()
+            .find(|name| name.name_id == 6)
+            .and_then(|name| name.to_string());
         let kept = |c: &char| c.is_ascii_alphanumeric() || *c == '-';
         let name = named.unwrap_or_default().chars().filter(kept).collect();
         Ok(Self { bytes, name })
@@ -119,7 +123,8 @@ impl Drawing {
 
     /// Objects of the file.
     fn assembled(&self, content: &[u8], glyphs: &UsedGlyphs, name: &str, file: &[u8]) -> Vec<u8> {
-        let [catalog, pages, page, font, cid, descriptor, cmap, data, stream, shade] = [1, 2, 3, 4, 5, 6, 7, 8, 9, 10].map(Ref::new);
+        let [catalog, pages, page, font, cid, descriptor, cmap, data, stream, shade] =
+            [1, 2, 3, 4, 5, 6, 7, 8, 9, 10].map(Ref::new);
         // a subset is named by six letters and the font
         let base = format!("SLCBEA+{name}");
         let base = Name(base.as_bytes());

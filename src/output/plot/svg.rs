@@ -156,7 +156,11 @@ impl SvgText {
     }
 
     fn width(&self, stroke: LineStyle) -> f64 {
-        if self.digits > 1 { self.round(stroke.width) } else { stroke.width }
+        if self.digits > 1 {
+            self.round(stroke.width)
+        } else {
+            stroke.width
+        }
     }
 
     /// Resolution [pt].

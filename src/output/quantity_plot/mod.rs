@@ -2,10 +2,12 @@
 //!
 //! ```text
 //! table    columns of the table of a result, its usual abscissa and quantities
+//! curves   columns as curves with their error bands
 //! profile  curves along the beam at instants
 //! names    names of columns for readers
 //! ```
 
+mod curves;
 pub mod names;
 pub mod profile;
 pub mod table;
@@ -14,9 +16,9 @@ use std::path::{Path, PathBuf};
 
 use super::folder::name_of;
 use super::plot::canvas::Drawing;
-use super::plot::{extent, width_of};
 use super::plot::picture::{Glyph, Panel, Picture, PictureAxis, PictureSeries};
 use super::plot::style::{POINTS_PER_MM, PictureStyle};
+use super::plot::{extent, width_of};
 use crate::error::{Error, Result};
 use table::ResultTable;
 
@@ -137,13 +139,20 @@ pub fn panels(results: &[PathBuf], asked: &PictureRequest) -> Result<Vec<Quantit
             }
             at => {
                 let usual = [profile::SHAPE.to_string()];
-                let names = if asked.quantities.is_empty() { &usual[..] } else { &asked.quantities };
+                let names = if asked.quantities.is_empty() {
+                    &usual[..]
+                } else {
+                    &asked.quantities
+                };
                 profile::panels(dir, names, at, label)?
             }
         };
         match all.is_empty() {
             true => all = own,
-            false => all.iter_mut().zip(own).for_each(|(panel, own)| panel.curves.extend(own.curves)),
+            false => all
+                .iter_mut()
+                .zip(own)
+                .for_each(|(panel, own)| panel.curves.extend(own.curves)),
         }
     }
     if asked.together {
@@ -172,13 +181,19 @@ fn labels(results: &[PathBuf], given: &[String]) -> Result<Vec<String>> {
         )));
     }
     if !given.is_empty() || results.len() < 2 {
-        return Ok(if given.is_empty() { vec![String::new()] } else { given.to_vec() });
+        return Ok(if given.is_empty() {
+            vec![String::new()]
+        } else {
+            given.to_vec()
+        });
     }
     let names: Vec<String> = results.iter().map(|dir| name_of(dir)).collect();
     let alike = |name: &String| names.iter().filter(|other| *other == name).count() > 1 || name.is_empty();
     let full = |dir: &Path| dir.display().to_string();
     let each = names.iter().zip(results);
-    Ok(each.map(|(name, dir)| if alike(name) { full(dir) } else { name.clone() }).collect())
+    Ok(each
+        .map(|(name, dir)| if alike(name) { full(dir) } else { name.clone() })
+        .collect())
 }
 
 /// One panel with the curves of all, named by their quantities.
@@ -216,7 +231,11 @@ fn together(all: Vec<QuantityPanel>) -> Result<QuantityPanel> {
 ///
 /// # Errors
 /// The sheet is too small.
-pub fn drawing(all: &[QuantityPanel], style: &PictureStyle, (width_mm, height_mm): (f64, Option<f64>)) -> Result<Drawing> {
+pub fn drawing(
+    all: &[QuantityPanel],
+    style: &PictureStyle,
+    (width_mm, height_mm): (f64, Option<f64>),
+) -> Result<Drawing> {
     let width = width_mm * POINTS_PER_MM / style.scale;
     let mut size = (width - 80.0, 100.0);
     let mut sheet = (width, 0.0);
@@ -266,7 +285,8 @@ fn longest_name(all: &[QuantityPanel], style: &PictureStyle) -> f64 {
 fn shape_of(all: &[QuantityPanel]) -> f64 {
     match all {
         [one] if one.equal => {
-            let over = |of: fn(&(f64, f64)) -> f64| extent(one.curves.iter().flat_map(|curve| curve.points.iter().map(of)));
+            let over =
+                |of: fn(&(f64, f64)) -> f64| extent(one.curves.iter().flat_map(|curve| curve.points.iter().map(of)));
             let length = |range: Option<(f64, f64)>| range.map_or(0.0, |(lo, hi)| hi - lo);
             let ratio = length(over(|p| p.1)) / length(over(|p| p.0)).max(1e-300);
             ratio.clamp(0.3, 1.2)
@@ -280,7 +300,9 @@ fn shape_of(all: &[QuantityPanel]) -> f64 {
 fn picture(all: &[QuantityPanel], style: &PictureStyle, (width, height): (f64, f64)) -> Picture {
     let panels = all.iter().map(|one| {
         let ticks = |length: f64, each: f64| ((length / (each * style.small)) as usize).max(2);
-        let axis = |(name, unit): &(String, String), count: usize, logarithmic: bool| PictureAxis::new(name, unit, count).logarithmic(logarithmic);
+        let axis = |(name, unit): &(String, String), count: usize, logarithmic: bool| {
+            PictureAxis::new(name, unit, count).logarithmic(logarithmic)
+        };
         let mut x = axis(&one.x, ticks(width, 5.0), one.logarithmic[0]);
         let mut y = axis(&one.y, ticks(height, 2.6), one.logarithmic[1]);
         let points = || one.curves.iter().flat_map(|curve| &curve.points);
@@ -295,7 +317,12 @@ fn picture(all: &[QuantityPanel], style: &PictureStyle, (width, height): (f64, f
 }
 
 /// Axes with one scale around all points.
-fn equally(x: PictureAxis, y: PictureAxis, points: impl Iterator<Item = (f64, f64)> + Clone, (width, height): (f64, f64)) -> (PictureAxis, PictureAxis) {
+fn equally(
+    x: PictureAxis,
+    y: PictureAxis,
+    points: impl Iterator<Item = (f64, f64)> + Clone,
+    (width, height): (f64, f64),
+) -> (PictureAxis, PictureAxis) {
     let range = |of: fn((f64, f64)) -> f64| extent(points.clone().map(of)).unwrap_or_default();
     let (along, up) = (range(|p| p.0), range(|p| p.1));
     let length = |(lo, hi): (f64, f64)| 1.1 * (hi - lo);
@@ -320,7 +347,8 @@ fn series(one: &QuantityPanel, style: &PictureStyle) -> Vec<PictureSeries> {
     }
     let several = one.curves.len() > 1;
     for (k, curve) in one.curves.iter().enumerate() {
-        let positive = |p: &&(f64, f64)| (!one.logarithmic[0] || p.0 > 0.0) && (!one.logarithmic[1] || p.1 > 0.0 || p.1.is_nan());
+        let positive =
+            |p: &&(f64, f64)| (!one.logarithmic[0] || p.0 > 0.0) && (!one.logarithmic[1] || p.1 > 0.0 || p.1.is_nan());
         let points = curve.points.iter().filter(positive).copied();
         let drawn = match one.marks {
             true => PictureSeries::marks(points, glyph(k, several), line(k).colour),

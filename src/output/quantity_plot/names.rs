@@ -13,7 +13,9 @@ pub fn for_readers(name: &str, own_unit: &str) -> (String, String) {
     if let Some(one) = Observable::named(name) {
         return (observable(one), own_unit.into());
     }
-    let part = PARTS.iter().find_map(|part| Some((part, name.strip_prefix(part)?.strip_prefix(' ')?)));
+    let part = PARTS
+        .iter()
+        .find_map(|part| Some((part, name.strip_prefix(part)?.strip_prefix(' ')?)));
     if let Some((part, output)) = part {
         let unit = if own_unit == "deg" { "°" } else { own_unit };
         return (format!("{part} of {}", spoken(output)), unit.into());
@@ -43,7 +45,11 @@ pub fn field(one: BeamField) -> String {
 /// Description of a quantity, with its symbol if its label has one: `tip deflection u₁`.
 fn observable(one: Observable) -> String {
     let words = one.describe().trim_start_matches("the ");
-    let symbol = one.label().rsplit(' ').next().filter(|last| last.starts_with('u') && last.chars().count() == 2);
+    let symbol = one
+        .label()
+        .rsplit(' ')
+        .next()
+        .filter(|last| last.starts_with('u') && last.chars().count() == 2);
     symbol.map_or_else(|| words.into(), |symbol| format!("{words} {symbol}"))
 }
 

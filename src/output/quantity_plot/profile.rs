@@ -99,7 +99,7 @@ fn joined(label: &str, at: String) -> String {
 /// # Errors
 /// The result has no shapes, or a quantity is unknown.
 pub fn panels(dir: &Path, quantities: &[String], at: &[f64], label: &str) -> Result<Vec<QuantityPanel>> {
-    match FolderKind::find(dir)? {
+    match FolderKind::find("draw", dir)? {
         FolderKind::Run | FolderKind::Cycle => run(dir, quantities, at, label),
         FolderKind::Equilibrium => equilibrium(dir, quantities, at, label),
         FolderKind::Modes => modes(dir, quantities, at, label),
@@ -153,7 +153,9 @@ fn run(dir: &Path, quantities: &[String], at: &[f64], label: &str) -> Result<Vec
             let bare = one.name().strip_suffix("_m").unwrap_or(one.name());
             [one.name(), bare].contains(&wanted.as_str()) || one.name().split('_').next() == Some(wanted)
         });
-        let one = one.filter(|one| there.contains(&one.name())).ok_or_else(|| unknown(wanted, &there))?;
+        let one = one
+            .filter(|one| there.contains(&one.name()))
+            .ok_or_else(|| unknown(wanted, &there))?;
         let x = file.axis(one.axis().name())?.unwrap_or_default();
         // where another beam or network begins, the curve breaks
         let parts = match one.axis() {
@@ -176,7 +178,11 @@ fn run(dir: &Path, quantities: &[String], at: &[f64], label: &str) -> Result<Vec
             FieldAxis::Network => ("network coordinate".into(), "1".into()),
             _ => along(),
         };
-        panels.push(QuantityPanel::curves(x_name, (field(one), one.unit().into()), curves.collect()));
+        panels.push(QuantityPanel::curves(
+            x_name,
+            (field(one), one.unit().into()),
+            curves.collect(),
+        ));
     }
     Ok(panels)
 }
@@ -197,17 +203,30 @@ fn equilibrium(dir: &Path, quantities: &[String], at: &[f64], label: &str) -> Re
     let mut reader = csv::Reader::from_reader(file);
     let headings = reader.headers().map_err(failed)?.clone();
     let factor = |heading: &str| heading.strip_prefix("x at ")?.strip_suffix(" [m]")?.parse::<f64>().ok();
-    let states: Vec<(usize, f64)> = headings.iter().enumerate().filter_map(|(k, heading)| Some((k, factor(heading)?))).collect();
+    let states: Vec<(usize, f64)> = headings
+        .iter()
+        .enumerate()
+        .filter_map(|(k, heading)| Some((k, factor(heading)?)))
+        .collect();
     let factors: Vec<f64> = states.iter().map(|state| state.1).collect();
     let chosen = nearest_of(&factors, at, "load factors", "1")?;
     let mut curves: Vec<NamedCurve> = chosen
         .iter()
-        .map(|k| NamedCurve::new(joined(label, format!("load factor {}", significant(factors[*k], 3))), vec![]))
+        .map(|k| {
+            NamedCurve::new(
+                joined(label, format!("load factor {}", significant(factors[*k], 3))),
+                vec![],
+            )
+        })
         .collect();
     let mut beam = String::new();
     for record in reader.records() {
         let record = record.map_err(failed)?;
-        let own = if headings.get(0) == Some("beam") { record.get(0).unwrap_or_default() } else { "" };
+        let own = if headings.get(0) == Some("beam") {
+            record.get(0).unwrap_or_default()
+        } else {
+            ""
+        };
         let number = |k: usize| record.get(k).and_then(|cell| cell.parse().ok()).unwrap_or(f64::NAN);
         for (curve, k) in curves.iter_mut().zip(&chosen) {
             if own != beam {
@@ -227,7 +246,11 @@ fn modes(dir: &Path, quantities: &[String], at: &[f64], label: &str) -> Result<V
     let theta = file.axis("theta_m")?.unwrap_or_default();
     let mut panels = vec![];
     for wanted in quantities {
-        let name = if wanted == SHAPE { "u1" } else { wanted.strip_suffix("_m").unwrap_or(wanted) };
+        let name = if wanted == SHAPE {
+            "u1"
+        } else {
+            wanted.strip_suffix("_m").unwrap_or(wanted)
+        };
         if !KNOWN.contains(&name) {
             return Err(unknown(wanted, &KNOWN));
         }
@@ -235,16 +258,29 @@ fn modes(dir: &Path, quantities: &[String], at: &[f64], label: &str) -> Result<V
         let count = file.npz.entry(&amplitude).map_or(0, crate::output::npz::Entry::rows);
         let numbers: Vec<f64> = (1..=count).map(|k| k as f64).collect();
         let chosen = nearest_of(&numbers, at, "modes", "1")?;
-        let both = file.rows(&amplitude, &chosen)?.into_iter().zip(file.rows(&phase, &chosen)?);
+        let both = file
+            .rows(&amplitude, &chosen)?
+            .into_iter()
+            .zip(file.rows(&phase, &chosen)?);
         let curves = chosen.iter().zip(both).map(|(k, (a, phase))| {
             let largest = a.iter().enumerate().max_by(|p, q| p.1.total_cmp(q.1));
             // the phase is that of the place that moves most
             let (start, size) = largest.map_or((0.0, 1.0), |(i, a)| (phase[i], *a));
-            let values = a.iter().zip(&phase).map(|(a, p)| a * (p - start).cos() / if size > 0.0 { size } else { 1.0 });
-            NamedCurve::new(joined(label, format!("mode {}", k + 1)), theta.iter().copied().zip(values).collect())
+            let values = a
+                .iter()
+                .zip(&phase)
+                .map(|(a, p)| a * (p - start).cos() / if size > 0.0 { size } else { 1.0 });
+            NamedCurve::new(
+                joined(label, format!("mode {}", k + 1)),
+                theta.iter().copied().zip(values).collect(),
+            )
         });
         let y = for_readers(name, "m").0;
-        panels.push(QuantityPanel::curves(along(), (format!("{y} / largest"), "1".into()), curves.collect()));
+        panels.push(QuantityPanel::curves(
+            along(),
+            (format!("{y} / largest"), "1".into()),
+            curves.collect(),
+        ));
     }
     Ok(panels)
 }

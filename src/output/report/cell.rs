@@ -59,7 +59,11 @@ fn pictures(section: &Section, ending: &str) -> Vec<Value> {
 /// Place and displacement of each node, both along and high [m].
 fn nodes(found: &Picture, load: usize) -> impl Iterator<Item = f64> {
     let moved = found.displacements_m.get(load).into_iter().flatten();
-    found.nodes_m.iter().zip(moved).flat_map(|(place, u)| [place[0], place[1], u[0], u[1]])
+    found
+        .nodes_m
+        .iter()
+        .zip(moved)
+        .flat_map(|(place, u)| [place[0], place[1], u[0], u[1]])
 }
 
 /// Outlines of an upper and a lower bladder about the middle of a pitch on the mid-plane, points `[along, high]` [m].

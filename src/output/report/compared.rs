@@ -93,7 +93,7 @@ fn begun(label: &str, name: String) -> Page {
 }
 
 fn put(page: &Page, dir: &Path) -> Result<WrittenPage> {
-    if FolderKind::find(dir).is_ok() {
+    if FolderKind::find("report on", dir).is_ok() {
         return Err(Error::Usage(format!(
             "--out {}: the folder contains a result whose page would be overwritten; name another folder",
             dir.display()

@@ -95,7 +95,7 @@ pub struct WrittenPage {
 ///
 /// The folder contains no result, a file of it cannot be read, or the page cannot be written.
 pub fn write(dir: &Path, out: Option<&Path>) -> Result<WrittenPage> {
-    let kind = FolderKind::find(dir)?;
+    let kind = FolderKind::find("report on", dir)?;
     let path = out.map_or_else(|| dir.join(REPORT), Path::to_path_buf);
     let elsewhere = folder_of(&path) != fs::canonicalize(dir).ok();
     let text = halt::complete(|| text(&Place::new(dir, None), kind, elsewhere))?;
@@ -123,7 +123,7 @@ pub fn complete(folder: &ResultFolder, case: &Case) -> Result<()> {
 /// As [`write`].
 pub fn lay(folder: &ResultFolder, history: Option<&HistoryInMemory>) -> Result<()> {
     let dir = folder.dir();
-    let text = halt::complete(|| text(&Place::new(dir, history), FolderKind::find(dir)?, false))?;
+    let text = halt::complete(|| text(&Place::new(dir, history), FolderKind::find("report on", dir)?, false))?;
     folder.lay(REPORT, text.as_bytes()).map(|_| ())
 }
 
