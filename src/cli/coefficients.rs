@@ -120,7 +120,7 @@ fn write_case(written: &section::SectionFile, path: &Path, asked: &CoefficientsA
         case["tubes"] = json!({"length_m": 0.3 * own.pitch_m, "radius_m": 0.001});
         case["network"] = json!({"chains": chains});
     }
-    replace(path, &format!("{case:#}\n"))?;
+    replace(path, format!("{case:#}\n"))?;
     super::print(&match asked.json {
         true => format!("{:#}\n", json!({"case": path})),
         false => {

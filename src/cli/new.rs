@@ -134,7 +134,7 @@ pub fn new(asked: &NewArguments) -> Result<ExitCode> {
         path.display().to_string()
     };
     let schema = path.with_file_name(SCHEMA);
-    replace(&schema, &format!("{:#}\n", schema_json()))?;
+    replace(&schema, format!("{:#}\n", schema_json()))?;
     super::print(&if asked.json {
         format!("{:#}\n", json!({"case": path, "schema": schema}))
     } else {

@@ -104,18 +104,10 @@ fn a_history_is_downloaded() {
 fn every_picture_is_downloaded() {
     let folder = tempfile::tempdir().expect("a folder");
     let place = |name: &str| folder.path().join(name);
-    let run = ["run", "cases/wiring-3.json", "--set", "/time/end_s=0.1"];
     let pages = [
-        (made(&place("run"), &run), 11),
+        (made(&place("run"), &["run", "cases/two-bladders.json"]), 11),
         (made(&place("curl"), &["equilibrium", "cases/curl.json"]), 5),
-        (made(&place("modes"), &["modes", "cases/wiring-3.json"]), 3),
-        (
-            made(
-                &place("bands"),
-                &["bands", "cases/metamaterial.json", "--to", "60", "--points", "10"],
-            ),
-            3,
-        ),
+        (made(&place("modes"), &["modes", "cases/two-bladders.json"]), 3),
         (
             made(&place("section"), &["equilibrium", "cases/section-actuator.json"]),
             6,
