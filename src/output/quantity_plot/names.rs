@@ -24,11 +24,7 @@ pub fn for_readers(name: &str, own_unit: &str) -> (String, String) {
         return (readable::pointer_name(name), readable::pointer_unit(name).into());
     }
     let of = if own_unit == "1" { unit(name) } else { own_unit };
-    let bare = match own_unit {
-        "1" => without_unit(name, of),
-        _ => name.to_string(),
-    };
-    (spoken(&bare), of.into())
+    (spoken(name), of.into())
 }
 
 /// Name of a field at an instant.
