@@ -227,6 +227,18 @@ impl Table {
         }
     }
 
+    /// Table with a given curve.
+    pub fn from_curve(curve: PiecewiseCurve) -> Self {
+        let (times_s, values) = curve.points();
+        Self {
+            times_s,
+            values,
+            interpolation: Interpolation::Monotone,
+            repeat: false,
+            curve,
+        }
+    }
+
     /// Period [s] of a repeated table; none for others.
     pub fn period_s(&self) -> Option<f64> {
         let [first, last] = self.curve.ends().filter(|_| self.repeat)?;

@@ -17,6 +17,7 @@
 //! reading              reads a result folder into memory
 //! errors               errors for scripts and for readers
 //! export               a result in other formats: tables of the fields, surfaces for ParaView
+//! fmu                  a case as a model for other programs
 //! comparison           the picture of two runs over each other
 //! effects              effects.csv, effects.json, effects.svg, table and sentence
 //! equilibrium          path.csv, shapes.csv, equilibrium.json, path.svg, table
@@ -59,6 +60,7 @@ pub mod evaluations;
 pub mod export;
 pub mod fit;
 pub mod floquet;
+pub mod fmu;
 pub mod folder;
 pub mod history;
 pub mod journal;

@@ -19,6 +19,7 @@ pub mod self_test;
 pub mod sensitivity;
 mod shapes;
 pub mod state_space;
+pub mod stepwise;
 
 use std::collections::BTreeSet;
 
@@ -302,7 +303,7 @@ fn is_linear(column: &HistoryColumn) -> bool {
 fn find_each(columns: &[HistoryColumn], names: &[String]) -> Result<Vec<usize>> {
     let mut chosen = vec![];
     for name in names {
-        let place = find(columns, name)?;
+        let place = find(columns, name, "linear output", is_linear)?;
         if !chosen.contains(&place) {
             chosen.push(place);
         }
@@ -310,16 +311,19 @@ fn find_each(columns: &[HistoryColumn], names: &[String]) -> Result<Vec<usize>> 
     Ok(chosen)
 }
 
-/// Index of an output by its name, with or without its unit.
-fn find(columns: &[HistoryColumn], name: &str) -> Result<usize> {
+/// Index of an output of a kind by its name, with or without its unit, among the columns that are of this kind.
+///
+/// # Errors
+/// [`Error::Usage`] for an unknown name.
+pub fn find(columns: &[HistoryColumn], name: &str, kind: &str, is_one: fn(&HistoryColumn) -> bool) -> Result<usize> {
     let place = columns.iter().position(|column| {
         let keys = [column.key(), probes::key(&column.name, column.unit)];
-        is_linear(column) && (column.name == name || keys.iter().any(|key| key == name))
+        is_one(column) && (column.name == name || keys.iter().any(|key| key == name))
     });
     place.ok_or_else(|| {
         let mut keys: Vec<String> = columns
             .iter()
-            .filter(|column| is_linear(column))
+            .filter(|column| is_one(column))
             .map(HistoryColumn::key)
             .collect();
         keys.sort_by_key(|key| key.starts_with("bladder_"));
@@ -335,7 +339,7 @@ fn find(columns: &[HistoryColumn], name: &str) -> Result<usize> {
             String::new()
         };
         Error::Usage(format!(
-            "--output {name}: the case has no such linear output{meant}; outputs are {}{more}; probes add others",
+            "--output {name}: the case has no such {kind}{meant}; outputs are {}{more}; probes add others",
             keys.join(", ")
         ))
     })

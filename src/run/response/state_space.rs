@@ -10,6 +10,8 @@
 //! If rates of an input appear, as for a moved end or a volume, the input of the model is the highest of them. The lower ones are
 //! further states.
 
+use serde::{Deserialize, Serialize};
+
 use super::LinearResponse;
 use crate::error::Result;
 use crate::sparse::Lu;
@@ -19,7 +21,7 @@ use crate::spectral::Pencil;
 const NOTHING: f64 = 1e-9;
 
 /// `x' = A x + B w`, `z = C x + D w` about a state: matrices in rows, SI units.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct StateSpace {
     /// `A`, one row for each state.
     pub a: Vec<Vec<f64>>,
@@ -44,7 +46,7 @@ pub struct StateSpace {
 }
 
 /// Accuracy of a model with fewer states than the equations.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ModelReduction {
     /// First and last frequency [Hz].
     pub band: [f64; 2],

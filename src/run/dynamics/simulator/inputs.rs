@@ -8,6 +8,8 @@ use crate::case::{self, Case};
 use crate::discrete::System;
 use crate::error::numbers::counted;
 use crate::error::{Error, Result};
+use crate::functions::signals::Table;
+use crate::functions::{PiecewiseCurve, Ramp, RampShape, Signal};
 use crate::onestep::OneStepOptions;
 use crate::run::method::{self, IntegratorOptions};
 
@@ -34,6 +36,35 @@ pub(super) struct HeldInput {
     pub opens: bool,
     /// Record of its oscillations.
     pub swings: InputOscillations,
+    /// Course of an input that must not jump; none for others.
+    pub path: Option<PiecewiseCurve>,
+}
+
+impl HeldInput {
+    /// Signal of the input from now on.
+    pub fn signal(&self) -> Signal {
+        match &self.path {
+            Some(path) => Signal::Table(Table::from_curve(path.clone())),
+            None => Signal::Constant(self.value),
+        }
+    }
+
+    /// Signal that changes to a value: by a jump at the first of two instants [s], or from there to the second for an input that must not
+    /// jump.
+    pub fn change(&self, [t, until]: [f64; 2], value: f64) -> (Signal, Option<PiecewiseCurve>) {
+        let path = self.path.as_ref().map(|path| path.moved([t, until], value));
+        let signal = match &path {
+            Some(path) => Signal::Table(Table::from_curve(path.clone())),
+            None => Signal::Ramp(Ramp {
+                from: self.value,
+                to: value,
+                start_s: t,
+                duration_s: 0.0,
+                shape: RampShape::default(),
+            }),
+        };
+        (signal, path)
+    }
 }
 
 /// Hash that identifies a case and its inputs.
@@ -60,7 +91,7 @@ pub(super) fn taken(case: &Case, inputs: &[SimulatorInput]) -> Result<(Case, Sys
         let below = format!("{}/signal", input.pointer);
         let found = all.iter().find(|(at, ..)| *at == input.pointer || *at == below);
         let Some((pointer, jumps, signal)) = found else {
-            let known = all.iter().filter(|(_, jumps, _)| *jumps).map(|(at, ..)| at.as_str());
+            let known = all.iter().map(|(at, ..)| at.as_str());
             let meant = case::nearest(&input.pointer, known.clone());
             let meant = meant.map_or_else(String::new, |near| format!("; nearest is {near}"));
             let known: Vec<&str> = known.collect();
@@ -69,11 +100,6 @@ pub(super) fn taken(case: &Case, inputs: &[SimulatorInput]) -> Result<(Case, Sys
                 known.join(", ")
             )));
         };
-        if !jumps {
-            return Err(usage(
-                "it prescribes a motion, which must not jump; use a force, pressure, flow or opening".into(),
-            ));
-        }
         if held.iter().any(|one| one.input.pointer == *pointer) {
             return Err(usage("it is given twice".into()));
         }
@@ -104,6 +130,7 @@ pub(super) fn taken(case: &Case, inputs: &[SimulatorInput]) -> Result<(Case, Sys
             places: vec![],
             swings: InputOscillations::new(value),
             opens: pointer.contains("/opening"),
+            path: (!jumps).then(|| PiecewiseCurve::constant(0.0, value)),
         });
     }
     let resolved = serde_json::to_value(case.resolved()).unwrap_or_default();

@@ -21,7 +21,7 @@ use crate::case::Case;
 use crate::dae::{BeamDae, Dae};
 use crate::discrete::{resolution, start};
 use crate::error::{Error, Result, SolverError};
-use crate::functions::{Ramp, RampShape, Signal};
+use crate::functions::{PiecewiseCurve, Signal};
 use crate::integrate::{StartOptions, Starter};
 use crate::onestep::OneStep;
 use crate::run::early_warnings;
@@ -49,6 +49,8 @@ pub struct Simulator {
     columns: Vec<HistoryColumn>,
     stops: Vec<ScheduledStop>,
     next: usize,
+    /// Present pieces of the courses of inputs that must not jump: start, and end if one of them moves [s].
+    course: (f64, Option<f64>),
     strides: StepLimits,
     end: f64,
     max_steps: u64,
@@ -64,7 +66,7 @@ impl Simulator {
     /// Creates the simulator of a case at its start; inputs begin with the values in the case.
     ///
     /// # Errors
-    /// [`Error::Usage`] for an input that is not a signal of the case, or that must not jump; those of
+    /// [`Error::Usage`] for an input that is not a signal of the case; those of
     /// [`System::new`](crate::discrete::System::new); a start that cannot be found.
     pub fn new(case: &Case, inputs: &[SimulatorInput]) -> Result<Self> {
         let of = inputs::mark(case, inputs);
@@ -106,6 +108,7 @@ impl Simulator {
             columns,
             stops,
             next: 0,
+            course: (0.0, None),
             strides,
             end: case.time.end_s,
             max_steps: case.solver.max_steps,
@@ -169,8 +172,8 @@ impl Simulator {
         all
     }
 
-    /// Sets the inputs and simulates until time `until` [s]. `ask` decides after every step if the simulation continues; if not, it
-    /// remains at that time.
+    /// Sets the inputs and simulates until time `until` [s]. An input that must not jump reaches its value at that time, by a cubic with
+    /// continuous rate. `ask` decides after every step if the simulation continues; if not, it remains at that time.
     ///
     /// # Errors
     /// [`Error::Usage`] for an invalid time or invalid values; [`Error::Solver`] if the simulation fails. It then remains at its last
@@ -185,8 +188,8 @@ impl Simulator {
         }
         inputs::admit(&self.held, values)?;
         let until = self.at_stop(until).min(self.end);
-        if self.held.iter().zip(values).any(|(one, value)| one.value != *value) {
-            self.set(values)?;
+        if self.course.1.is_some() || self.held.iter().zip(values).any(|(one, value)| one.value != *value) {
+            self.set(values, until)?;
         }
         SimulatorWallTimes::add(&mut self.spent.jumps, &mut clock);
         let done = self.advance(until, ask);
@@ -211,7 +214,10 @@ impl Simulator {
 
     /// An instant in the smooth interval that ends at time `t` [s].
     fn behind(&self, t: f64) -> f64 {
-        let last = self.next.checked_sub(1).map_or(0.0, |k| self.stops[k].t);
+        let mut last = self.next.checked_sub(1).map_or(0.0, |k| self.stops[k].t);
+        if self.course.0 < t {
+            last = last.max(self.course.0);
+        }
         if last < t {
             0.5 * (last + t)
         } else {
@@ -222,15 +228,23 @@ impl Simulator {
     /// An instant in the present smooth interval.
     fn inside(&self) -> f64 {
         let t = self.time();
-        if self.stands_at_stop() {
+        let end = self.course.1.unwrap_or(f64::INFINITY);
+        if self.stands_at_stop() || t >= end {
             self.behind(t)
         } else {
-            0.5 * (t + self.stops[self.next].t)
+            0.5 * (t + self.stops[self.next].t.min(end))
         }
     }
 
-    /// Changes the inputs at the present time by jumps, together with everything that the case itself switches there.
-    fn set(&mut self, values: &[f64]) -> Result<()> {
+    /// Time of the next jump of the case's own signals [s].
+    pub fn next_jump(&self) -> Option<f64> {
+        let ahead = self.stops[self.next..].iter().skip(usize::from(self.stands_at_stop()));
+        ahead.filter(|stop| stop.switches).map(|stop| stop.t).next()
+    }
+
+    /// Changes the inputs at the present time by jumps, together with everything that the case itself switches there. Inputs that must not
+    /// jump begin to move, until time `until` [s].
+    fn set(&mut self, values: &[f64], until: f64) -> Result<()> {
         let t = self.time();
         self.leave_stretch()?;
         let behind = self.behind(t);
@@ -239,16 +253,19 @@ impl Simulator {
         }
         let dae = self.solver.dae_mut();
         let mut valves = false;
-        for (one, value) in self.held.iter().zip(values) {
-            let jump = Signal::Ramp(Ramp {
-                from: one.value,
-                to: *value,
-                start_s: t,
-                duration_s: 0.0,
-                shape: RampShape::default(),
-            });
-            dae.put_signal(&one.places, &jump);
+        self.course = (t, None);
+        for (one, value) in self.held.iter_mut().zip(values) {
+            let (signal, path) = one.change([t, until], *value);
+            dae.put_signal(&one.places, &signal);
             valves |= one.opens && one.value != *value;
+            if path
+                .as_ref()
+                .and_then(PiecewiseCurve::ends)
+                .is_some_and(|[_, end]| end > t)
+            {
+                self.course.1 = Some(until);
+            }
+            one.path = path;
         }
         dae.enter_smooth_interval(behind);
         self.switch(t)?;
@@ -256,7 +273,9 @@ impl Simulator {
         for (one, value) in self.held.iter_mut().zip(values) {
             one.swings.jump(t, [one.value, *value]);
             one.value = *value;
-            dae.put_signal(&one.places, &Signal::Constant(*value));
+            if one.path.is_none() {
+                dae.put_signal(&one.places, &one.signal());
+            }
         }
         // frequent changes of inputs are small: factors and step size are kept, and the integrator discards them if they fail
         let size = self.solver.size();

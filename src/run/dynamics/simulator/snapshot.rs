@@ -6,7 +6,7 @@ use super::oscillations::InputOscillations;
 use super::{Simulator, fault, inputs, solver};
 use crate::dae::Dae as _;
 use crate::error::{Error, Result};
-use crate::functions::Signal;
+use crate::functions::PiecewiseCurve;
 use crate::run::observe::Observed;
 
 /// Data from which a [`Simulator`] of the same case and inputs resumes bit for bit.
@@ -27,6 +27,11 @@ pub struct Snapshot {
     observed: Observed,
     #[serde(default)]
     swings: Vec<InputOscillations>,
+    #[serde(default)]
+    course: (f64, Option<f64>),
+    /// Courses of the inputs that must not jump.
+    #[serde(default)]
+    paths: Vec<PiecewiseCurve>,
 }
 
 impl Snapshot {
@@ -72,6 +77,8 @@ impl Simulator {
             integrals: self.integrals.clone(),
             observed: self.observer.seen.clone(),
             swings: self.held.iter().map(|one| one.swings).collect(),
+            course: self.course,
+            paths: self.held.iter().filter_map(|one| one.path.clone()).collect(),
         };
         self.restore(&snapshot)?;
         Ok(snapshot)
@@ -88,6 +95,8 @@ impl Simulator {
             && snapshot.integrals.len() == self.carried.len()
             && snapshot.values.len() == self.held.len()
             && snapshot.observed.row.values().len() == self.columns.len()
+            && snapshot.paths.len() == self.held.iter().filter(|one| one.path.is_some()).count()
+            && snapshot.paths.iter().all(PiecewiseCurve::is_whole)
             && snapshot.next < self.stops.len()
             && (0.0..f64::INFINITY).contains(&snapshot.size)
             && (0.0..=self.end).contains(&snapshot.t);
@@ -100,16 +109,21 @@ impl Simulator {
         self.rates.copy_from_slice(&snapshot.yp);
         self.carried.copy_from_slice(&snapshot.integrals);
         self.next = snapshot.next;
+        self.course = snapshot.course;
         self.starter.forget();
         self.observer.seen.clone_from(&snapshot.observed);
         let restarted = self.solver.restart(t, &self.state, &self.rates);
         restarted.map_err(|failure| solver(fault(&failure)))?;
         let inside = self.inside();
         let dae = self.solver.dae_mut();
+        let mut paths = snapshot.paths.iter();
         for (one, value) in self.held.iter_mut().zip(&snapshot.values) {
             one.value = *value;
             one.swings = InputOscillations::new(*value);
-            dae.put_signal(&one.places, &Signal::Constant(*value));
+            if let Some(path) = &mut one.path {
+                path.clone_from(paths.next().unwrap_or(&PiecewiseCurve::constant(0.0, *value)));
+            }
+            dae.put_signal(&one.places, &one.signal());
         }
         dae.enter_smooth_interval(inside);
         for (one, swings) in self.held.iter_mut().zip(&snapshot.swings) {
