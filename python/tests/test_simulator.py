@@ -118,6 +118,31 @@ def test_several_inputs_and_what_is_refused(case):
         slcbeam.State.read(b"garbage")
 
 
+def test_ends_and_volumes_move_to_their_values_within_a_step():
+    """Motions must not jump: their rates are continuous. A state within a motion goes on bit for bit."""
+    root, mesh = "/ends/root/clamped/u3_m", {"/mesh/cells_per_segment": 1, "/mesh/cells_per_bladder": 1}
+    sim = slcbeam.Simulator(slcbeam.load("wiring-2", set=mesh), {root: (-0.013, 0.013)})
+    for value in (1e-5, 3e-5, 3e-5):
+        sim.step(1e-3, value)
+    state, rows = sim.save(), []
+    for value in (5e-5, 5e-5, 5e-5, 2e-5):
+        rows.append(sim.step(1e-3, value))
+    for kept in (state, pickle.loads(pickle.dumps(state))):
+        sim.restore(kept)
+        for value, row in zip((5e-5, 5e-5, 5e-5, 2e-5), rows):
+            np.testing.assert_array_equal(sim.step(1e-3, value), row)
+    assert abs(sim["energy_residual"]) < 1e-3 * sim["kinetic_energy"]
+    with pytest.raises(slcbeam.UsageError, match="range"):
+        sim.step(1e-3, 0.1)
+
+    port = "/network/ports/0/volume_m3"
+    sim = slcbeam.Simulator(slcbeam.load("gripper", set={"/mesh/cells_per_segment": 1}), {port: (0.0, 3e-5)})
+    for volume in (1e-6, 2e-6, 2e-6, 2e-6):
+        sim.step(0.01, volume)
+        assert sim["port_syringe_volume"] == pytest.approx(volume, rel=1e-12)
+    assert abs(sim["port_syringe_flow"]) < 1e-9
+
+
 def test_wall_times_are_parts_of_the_whole(case):
     """Each part grows with what is done: jumps with changed inputs alone."""
     spec = importlib.util.spec_from_file_location("step_cost", EXAMPLE.parent / "step_cost.py")
