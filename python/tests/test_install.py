@@ -7,11 +7,13 @@ import os
 import re
 import shutil
 import subprocess
+import zipfile
 from pathlib import Path
 
 import pytest
 
 ROOT = Path(__file__).resolve().parents[2]
+FMU = ["export", "cases/tour-actuator.json", "--input", "/network/chains/0/ends/0/pressure_pa", "--fmu"]
 CASE = ["run", "cases/bend-wet.json", "--quiet", "--lean", "--out"]
 
 
@@ -38,6 +40,7 @@ def test_the_deb_holds_the_program_and_names_its_libraries(packages, tmp_path):
     assert re.search(r"Version: \d", told("dpkg-deb", "--info", deb)) and (tmp_path / "usr/share/bash-completion/completions/slcbeam").stat().st_size > 1000
     documents = tmp_path / "usr/share/doc/slcbeam"
     told(tmp_path / "usr/bin/slcbeam", *CASE, tmp_path / "result", cwd=documents)
+    told(tmp_path / "usr/bin/slcbeam", *FMU, tmp_path / "a.fmu", cwd=documents)
     assert (tmp_path / "result/summary.json").is_file() and "MIT" in (documents / "copyright").read_text()
 
 
@@ -64,11 +67,16 @@ def test_the_tarball_runs_where_no_library_is(packages, tmp_path):
     if subprocess.run([*alone, "true"], capture_output=True).returncode == 0:
         inside = [*alone, f"--root={root}", "--wd=/slcbeam", "/slcbeam/slcbeam"]
         told(*inside, *CASE, "/tmp/result")
+        told(*inside, *FMU, "/tmp/a.fmu")
     else:  # a machine that gives no process a root folder of its own: at least none but its own libraries are taken
         taken = dict(re.findall(r"(\S+) => (/\S+) \(0x", told("ldd", program)))
         assert all(Path(taken[name]).is_relative_to(root / "slcbeam/lib") for name in own & taken.keys()) and own & taken.keys()
         told(program, *CASE, root / "tmp/result", cwd=root / "slcbeam", env={})
+        told(program, *FMU, root / "tmp/a.fmu", cwd=root / "slcbeam", env={})
     assert (root / "tmp/result/summary.json").is_file()
+    with zipfile.ZipFile(root / "tmp/a.fmu") as archive:
+        archived = {Path(name).name for name in archive.namelist()}
+    assert {"libklu.so.1", "libamd.so.2", "tour_actuator.so"} <= archived, archived
 
 
 def test_versions_agree():

@@ -21,11 +21,11 @@ pub enum Interpolation {
 /// Points with the second derivatives of the curve at both ends of each piece.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct PiecewiseCurve {
-    at: Vec<f64>,
-    values: Vec<f64>,
-    second: Vec<[f64; 2]>,
+    pub(super) at: Vec<f64>,
+    pub(super) values: Vec<f64>,
+    pub(super) second: Vec<[f64; 2]>,
     /// Places at which the value jumps.
-    jumps: Vec<f64>,
+    pub(super) jumps: Vec<f64>,
 }
 
 /// Points beyond each end of a period included in its spline: their influence at least halves from point to point.
@@ -75,54 +75,6 @@ impl PiecewiseCurve {
             curve.second = second[copies * pieces..(copies + 1) * pieces].to_vec();
         }
         Some(curve)
-    }
-
-    /// Constant from a place on.
-    pub fn constant(at: f64, value: f64) -> Self {
-        Self {
-            at: vec![at],
-            values: vec![value],
-            ..Self::default()
-        }
-    }
-
-    /// Curve that follows this one until `from`, and reaches `value` at `to` by a cubic with continuous rate. The rate at `to` is the
-    /// mean rate of the cubic. Of the pieces before, only the last one and the first point remain. A curve that rests at `value` ends at
-    /// `from`, and is constant from there.
-    pub fn moved(&self, [from, to]: [f64; 2], value: f64) -> Self {
-        let last = self.at.len() - 1;
-        let start = match last {
-            0 => Jet::constant(self.values[0]),
-            _ if from > self.at[last] => Jet::constant(self.values[last]),
-            _ => self.piece(last - 1, from),
-        };
-        let mut curve = Self::constant(self.at[0], self.values[0]);
-        let mut reach = |at: f64, value: f64, second: [f64; 2]| {
-            if curve.at.last().is_some_and(|before| *before < at) {
-                curve.at.push(at);
-                curve.values.push(value);
-                curve.second.push(second);
-            }
-        };
-        if last > 0 && from <= self.at[last] {
-            // the last piece, up to `from`
-            reach(self.at[last - 1], self.values[last - 1], [0.0; 2]);
-            reach(from, start.value, [self.second[last - 1][0], start.acceleration]);
-        } else {
-            reach(self.at[last], self.values[last], [0.0; 2]);
-            reach(from, start.value, [0.0; 2]);
-        }
-        let h = to - from;
-        let bend = (value - start.value - h * start.rate) / (h * h);
-        if value != start.value || start.rate != 0.0 {
-            reach(to, value, [4.0 * bend, -2.0 * bend]);
-        }
-        curve
-    }
-
-    /// True if the parts fit together, as those of a curve that was stored.
-    pub fn is_whole(&self) -> bool {
-        !self.at.is_empty() && self.at.len() == self.values.len() && self.at.len() == self.second.len() + 1
     }
 
     /// First and last place.

@@ -6,6 +6,7 @@
 //! | `integral` | integrals of functions of time |
 //! | [`profile`] | functions of place: values, integrals, waves |
 //! | `curve` | curves through points, for tables of both |
+//! | `moved_curve` | curves that are extended piece by piece |
 //! | `jet` | a value with its first three derivatives |
 //! | [`bounds`] | bounds of values, rates, variation and excitation, by interval arithmetic |
 //! | `number_or_object` | JSON format |
@@ -15,6 +16,7 @@ mod curve;
 mod evaluate;
 mod integral;
 mod jet;
+mod moved_curve;
 mod number_or_object;
 pub mod profile;
 pub mod signals;

@@ -1,5 +1,6 @@
 //! `slcbeam export`: what ParaView and spreadsheets are given is what `fields.npz` holds, number for number.
 
+mod fmu;
 mod piece;
 mod structures;
 mod surfaces;

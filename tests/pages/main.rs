@@ -146,6 +146,9 @@ fn run(page: &Path) -> Option<String> {
     let folder = tempfile::tempdir().unwrap();
     std::os::unix::fs::symlink(root.join("cases"), folder.path().join("cases")).unwrap();
     let program = PathBuf::from(assert_cmd::cargo::cargo_bin!("slcbeam"));
+    // FMUs are written here, and not simulated: a file that the program takes for their library
+    let library = folder.path().join(slcbeam::output::fmu::LIBRARY);
+    fs::write(&library, slcbeam::output::fmu::MARK).unwrap();
     let others = std::env::var("PATH").unwrap_or_default();
     let path = format!("{}:{others}", program.parent().unwrap().display());
     let script = format!("set -euo pipefail\n{}\n", lines.join("\n"));
@@ -154,6 +157,7 @@ fn run(page: &Path) -> Option<String> {
         .current_dir(folder.path())
         .env("PATH", path)
         .env("ROOT", &root)
+        .env("SLCBEAM_FMU_LIBRARY", &library)
         .output()
         .unwrap();
     let said = String::from_utf8_lossy(&output.stderr).into_owned();

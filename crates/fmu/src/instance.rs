@@ -129,7 +129,7 @@ impl Instance {
     }
 
     /// Fails unless the instance is in one of these phases.
-    pub fn expect(&self, phases: &[Phase], call: &str) -> Result<(), String> {
+    pub fn require(&self, phases: &[Phase], call: &str) -> Result<(), String> {
         match phases.contains(&self.phase) {
             true => Ok(()),
             false => Err(format!("{call} is not allowed in the state {:?}", self.phase)),

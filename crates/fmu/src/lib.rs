@@ -202,7 +202,7 @@ pub unsafe extern "C" fn fmi3EnterInitializationMode(
     // SAFETY: an instance by the contract of FMI.
     unsafe {
         guarded(instance, call, |handle| {
-            handle.instance.expect(&[Phase::Instantiated], call)?;
+            handle.instance.require(&[Phase::Instantiated], call)?;
             handle.instance.begin(start, stop_defined.then_some(stop))?;
             Ok(Status::Ok)
         })
@@ -218,7 +218,7 @@ macro_rules! transitions {
             // SAFETY: an instance by the contract of FMI.
             unsafe {
                 guarded(instance, stringify!($name), |handle| {
-                    handle.instance.expect(&[$(Phase::$from),*], stringify!($name))?;
+                    handle.instance.require(&[$(Phase::$from),*], stringify!($name))?;
                     let next: fn(&Instance) -> Phase = $to;
                     let next = next(&handle.instance);
                     handle.instance.enter(next);
@@ -266,7 +266,7 @@ pub unsafe extern "C" fn fmi3UpdateDiscreteStates(
     // SAFETY: an instance, and places for results, by the contract of FMI.
     unsafe {
         guarded(instance, "fmi3UpdateDiscreteStates", |handle| {
-            handle.instance.expect(&[Phase::Event], "fmi3UpdateDiscreteStates")?;
+            handle.instance.require(&[Phase::Event], "fmi3UpdateDiscreteStates")?;
             let event = handle.instance.next_event();
             for place in [needs_update, terminate, nominals_changed, values_changed] {
                 put(place, false);
@@ -294,7 +294,7 @@ pub unsafe extern "C" fn fmi3DoStep(
     unsafe {
         guarded(instance, "fmi3DoStep", |handle| {
             let mut outcome = StepOutcome::default();
-            let done = handle.instance.expect(&[Phase::Step], "fmi3DoStep");
+            let done = handle.instance.require(&[Phase::Step], "fmi3DoStep");
             let done = done.and_then(|()| handle.instance.step(from, size, &mut outcome));
             put(event, outcome.event);
             put(terminate, outcome.ended.is_some());

@@ -396,9 +396,11 @@ def compare(*results: str | os.PathLike[str], **options: Any) -> Answer:
 
 
 def export(folder: str | os.PathLike[str], **options: Any) -> None:
-    """Writes the folder of a run in other formats: tables (CSV), surfaces for ParaView (VTK) (``slcbeam export``).
+    """Writes the folder of a run in other formats: tables (CSV), surfaces for ParaView (VTK). Writes the file of a case as a state-space
+    model or as an FMU (``slcbeam export``).
 
-    :param options: ``format="csv"``, ``times="0.1,0.45:0.5"``, ``every=10``, ``out=FOLDER``.
+    :param options: ``format="csv"``, ``times="0.1,0.45:0.5"``, ``every=10``, ``out=FOLDER``; for a case ``fmu=FILE``,
+        ``input=[POINTER, ..]``, ``output="tip_u1"``.
     """
     _slcbeam.command(["export", str(place(folder)), *_words(options)])
 

@@ -18,12 +18,13 @@ Values = Union[None, float, Sequence[float], np.ndarray, Mapping[str, float]]
 
 
 class Simulator:
-    """Simulates a case step by step. Inputs (loads, pressures, flows, openings) are constant during a step.
+    """Simulates a case step by step. Inputs (loads, pressures, flows, openings) are constant during a step. Volumes and motions of ends
+    reach their value at the end of the step, by a cubic with continuous rate.
 
     :param case: a :class:`Case`, or an argument of :func:`load`. ``/time/end_s`` limits the simulated time.
     :param inputs: smallest and largest value of each input, by the JSON pointer of its signal in the unit of its key. They determine the
         effects of the model and the scales of the unknowns. The initial values are those of the case at its start.
-    :raises UsageError: if a signal does not exist, or must not jump (a motion, a volume).
+    :raises UsageError: if a signal does not exist.
 
     >>> import slcbeam
     >>> inlet = "/network/chains/0/ends/0/pressure_pa"

@@ -1,6 +1,7 @@
 //! The shared library of an FMU, and the libraries that it needs.
 
 use std::collections::BTreeMap;
+use std::ffi::{OsStr, OsString};
 use std::fs;
 use std::path::{Path, PathBuf};
 
@@ -49,11 +50,13 @@ impl Libraries {
     /// # Errors
     /// [`Error::Usage`] if the library is missing or of another version; a library that it needs cannot be found or read.
     pub fn find() -> Result<Self> {
-        let path = path()?;
+        let program = std::env::current_exe().and_then(fs::canonicalize).unwrap_or_default();
+        let programs = std::env::var_os("PATH").unwrap_or_default();
+        let path = path(std::env::var_os(VARIABLE), &program, &programs)?;
         let own = read(&path)?;
         if !own.windows(MARK.len()).any(|part| part == MARK.as_bytes()) {
             return Err(Error::Usage(format!(
-                "--fmu: {} belongs to another version of slcbeam. Build it again: cargo build --release --workspace",
+                "--fmu: {} belongs to another version of slcbeam. Build it again: cargo build --release --package slcbeam-fmu",
                 path.display()
             )));
         }
@@ -86,17 +89,20 @@ fn read(path: &Path) -> Result<Vec<u8>> {
     fs::read(path).map_err(|why| fault("read", path, why))
 }
 
-/// Path of the library.
-fn path() -> Result<PathBuf> {
-    if let Some(path) = std::env::var_os(VARIABLE) {
+/// Path of the library: that of the variable, else beside the program or where packages put it, else beside a program on the `PATH`.
+fn path(given: Option<OsString>, program: &Path, programs: &OsStr) -> Result<PathBuf> {
+    if let Some(path) = given {
         return Ok(path.into());
     }
-    let program = std::env::current_exe().and_then(fs::canonicalize).unwrap_or_default();
-    let beside = program.parent().unwrap_or(Path::new("/"));
-    let places = ["", "../lib/slcbeam", "lib"].map(|folder| beside.join(folder).join(LIBRARY));
-    places.iter().find(|path| path.is_file()).cloned().ok_or_else(|| {
+    let mut folders: Vec<PathBuf> = program.parent().map(Path::to_owned).into_iter().collect();
+    let on_path = std::env::split_paths(programs).filter(|folder| folder.join("slcbeam").is_file());
+    folders.extend(on_path.filter_map(|folder| fs::canonicalize(folder).ok()));
+    let places = |folder: &PathBuf| ["", "../lib/slcbeam", "lib"].map(|below| folder.join(below).join(LIBRARY));
+    let found = folders.iter().flat_map(places).find(|path| path.is_file());
+    found.ok_or_else(|| {
         Error::Usage(format!(
-            "--fmu: {LIBRARY} is missing beside the program, {}. Build it: cargo build --release --workspace; or set {VARIABLE} to its path",
+            "--fmu: {LIBRARY} is missing beside the program, {}. Build it: cargo build --release --package slcbeam-fmu; or set \
+             {VARIABLE} to its path",
             program.display()
         ))
     })
@@ -154,7 +160,38 @@ fn names(bytes: &[u8]) -> Vec<String> {
 
 #[cfg(test)]
 mod tests {
-    use super::names;
+    use std::ffi::OsStr;
+    use std::fs;
+
+    use super::{LIBRARY, names, path};
+
+    /// Goal: places of the library, in their order, and the message if there is none.
+    #[test]
+    fn the_library_is_found_beside_the_program_or_in_its_packages() {
+        let folder = tempfile::tempdir().unwrap();
+        let at = |place: &str| folder.path().join(place);
+        let program = at("usr/bin/slcbeam");
+        let put = |place: &str| {
+            fs::create_dir_all(at(place).parent().unwrap()).unwrap();
+            fs::write(at(place), "").unwrap();
+            fs::canonicalize(at(place)).unwrap()
+        };
+        put("usr/bin/slcbeam");
+        let find = |programs: &str| path(None, &program, OsStr::new(programs));
+        let why = find("").unwrap_err().to_string();
+        assert!(why.contains("cargo build --release --package slcbeam-fmu"), "{why}");
+        put("other/slcbeam");
+        let elsewhere = put(&format!("other/lib/{LIBRARY}"));
+        assert_eq!(find(at("other").to_str().unwrap()).unwrap(), elsewhere);
+        let packaged = put(&format!("usr/lib/slcbeam/{LIBRARY}"));
+        assert_eq!(fs::canonicalize(find("").unwrap()).unwrap(), packaged);
+        let beside = put(&format!("usr/bin/{LIBRARY}"));
+        assert_eq!(fs::canonicalize(find("").unwrap()).unwrap(), beside);
+        assert_eq!(
+            path(Some("given".into()), &program, OsStr::new("")).unwrap(),
+            OsStr::new("given")
+        );
+    }
 
     /// Goal: the parts of the ELF format that are read, on this test program, which needs the C library and KLU.
     #[test]
