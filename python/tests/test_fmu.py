@@ -1,7 +1,9 @@
 """FMUs, as an importer uses them: fmpy's checker, steps, states, events, and FMUs coupled with each other."""
 
 import json
+import re
 import shutil
+import subprocess
 import threading
 from pathlib import Path
 
@@ -85,6 +87,8 @@ def fmu(program, tmp_path):
     yield write
     for one in made:
         one.close()
+    for path in paths.values():
+        path.unlink()
 
 
 @pytest.fixture
@@ -117,6 +121,7 @@ def test_the_checker_finds_no_problem_and_simulates(program, tmp_path, name):
     result = fmpy.simulate_fmu(str(path), stop_time=stop, output_interval=stop / 10)
     assert result["time"][-1] == pytest.approx(stop)
     assert all(np.isfinite(result[column]).all() for column in result.dtype.names)
+    path.unlink()
 
 
 def test_ten_thousand_steps_are_those_of_the_simulator_bit_for_bit(fmu, finger):
@@ -234,6 +239,35 @@ def test_limits_and_mistakes_are_reported_and_can_be_undone(fmu, finger):
     own.step(0.01)
     longer = fmu(finger, f"{INLET}=0,6e4", stop=3.0)
     longer.step(2.5)
+
+
+def test_a_limit_of_the_model_ends_the_simulation(fmu, finger):
+    """Suction closes a bladder. Steps that may end early request the end, others fail; an earlier state continues."""
+    wide = f"{INLET}=-4e5,6e4"
+    early, plain = fmu(finger, wide, early=True), fmu(finger, wide)
+    state = plain.slave.getFMUState()
+    early[PRESSURE] = plain[PRESSURE] = -4e5
+    event, terminate, returned, last = early.step(1.0)
+    assert (event, terminate, returned) == (False, True, True) and 0 < last < 1
+    assert "E048" in early.messages[-1][1] or "E048" in str(early.messages)
+    with pytest.raises(FMICallException):
+        plain.step(1.0)
+    plain.slave.setFMUState(state)
+    plain.t = 0.0
+    plain[PRESSURE] = 1e3
+    plain.step(0.01)
+    assert np.isfinite(plain.row()).all()
+
+
+def test_the_library_needs_nothing_but_the_c_library(fmu, finger):
+    own = fmu(finger, f"{INLET}=0,6e4")
+    (library,) = Path(own.folder).glob("binaries/x86_64-linux/tour_actuator.so")
+    printed = subprocess.run(["ldd", library], capture_output=True, text=True, check=True).stdout
+    found = dict(re.findall(r"(\S+) => (\S+) \(0x", printed))
+    outside = {name for name, place in found.items() if not Path(place).is_relative_to(own.folder)}
+    assert outside <= {"libc.so.6", "libm.so.6", "libgcc_s.so.1"} and any(name.startswith("libklu") for name in found), printed
+    names = {variable.name for variable in own.about.modelVariables}
+    assert "network.chains[0].ends[0].pressure_pa" in names
 
 
 def test_a_moved_end_follows_its_values(fmu):

@@ -286,6 +286,14 @@ impl Instance {
         Ok(())
     }
 
+    /// Warnings of the simulation so far.
+    pub fn warnings(&self) -> Vec<String> {
+        match &self.model {
+            Some(Model::Beam(simulator, _)) => simulator.warnings(),
+            _ => vec![],
+        }
+    }
+
     /// Time of the next jump of a signal of the case.
     pub fn next_event(&self) -> Option<f64> {
         match &self.model {

@@ -236,8 +236,26 @@ transitions! {
     fmi3EnterEventMode: [Step] => |_| Phase::Event;
     /// Leaves event mode.
     fmi3EnterStepMode: [Event] => |_| Phase::Step;
-    /// Ends the simulation.
-    fmi3Terminate: [Step, Event] => |_| Phase::Terminated;
+}
+
+/// Ends the simulation, and reports its warnings.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn fmi3Terminate(instance: *mut c_void) -> Status {
+    // SAFETY: an instance by the contract of FMI.
+    unsafe {
+        guarded(instance, "fmi3Terminate", |handle| {
+            handle.instance.require(&[Phase::Step, Phase::Event], "fmi3Terminate")?;
+            if handle.logger.on {
+                handle
+                    .instance
+                    .warnings()
+                    .iter()
+                    .for_each(|text| handle.logger.warning(text));
+            }
+            handle.instance.enter(Phase::Terminated);
+            Ok(Status::Ok)
+        })
+    }
 }
 
 /// Returns to the state after instantiation.
