@@ -37,13 +37,13 @@ enum Model {
     /// The case, and the columns of the outputs.
     Beam(Box<Simulator>, Vec<usize>),
     /// Small motions of the case.
-    Linear(LinearSimulator),
+    Linear(Box<LinearSimulator>),
 }
 
 /// State of a model.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 enum ModelState {
-    Beam(Snapshot),
+    Beam(Box<Snapshot>),
     Linear(LinearState),
 }
 
@@ -154,7 +154,7 @@ impl Instance {
         if let Ok(bytes) = std::fs::read(&linear) {
             let model = serde_json::from_slice(&bytes)
                 .map_err(|why| Error::Usage(format!("cannot read {}: {why}", linear.display())))?;
-            return Ok(Model::Linear(LinearSimulator::new(model)));
+            return Ok(Model::Linear(Box::new(LinearSimulator::new(model))));
         }
         let path = self.resources.join(CASE);
         let mut case = case::load(&path, &[])?;
@@ -245,7 +245,7 @@ impl Instance {
             return Err(format!("the size of a step is {size} s; it must be positive"));
         }
         let rounding = ROUNDING * (from.abs() + size);
-        if !((from - outcome.time).abs() <= rounding) {
+        if !from.is_finite() || (from - outcome.time).abs() > rounding {
             return Err(format!(
                 "the step begins at {from} s, but the model is at {} s",
                 outcome.time
@@ -305,7 +305,9 @@ impl Instance {
     /// The state.
     pub fn save(&mut self) -> Result<InstanceState, String> {
         let model = match &mut self.model {
-            Some(Model::Beam(simulator, _)) => Some(ModelState::Beam(simulator.save().map_err(|error| text(&error))?)),
+            Some(Model::Beam(simulator, _)) => Some(ModelState::Beam(Box::new(
+                simulator.save().map_err(|error| text(&error))?,
+            ))),
             Some(Model::Linear(model)) => Some(ModelState::Linear(model.save())),
             None => None,
         };

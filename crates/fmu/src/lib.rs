@@ -337,7 +337,7 @@ pub unsafe extern "C" fn fmi3GetFloat64(
     references: *const u32,
     count: usize,
     values: *mut f64,
-    _values: usize,
+    _places: usize,
 ) -> Status {
     // SAFETY: an instance, references, and as many places for results, by the contract of FMI.
     unsafe {
@@ -359,7 +359,7 @@ pub unsafe extern "C" fn fmi3SetFloat64(
     references: *const u32,
     count: usize,
     values: *const f64,
-    _values: usize,
+    _places: usize,
 ) -> Status {
     // SAFETY: an instance, references, and as many values, by the contract of FMI.
     unsafe {
