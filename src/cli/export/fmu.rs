@@ -123,15 +123,13 @@ pub(super) fn fmu(asked: &ExportArguments, file: &Path) -> Result<ExitCode> {
 
 /// Line about an input.
 fn describe(input: &FmuInput) -> String {
-    let range = input.range.map_or_else(String::new, |range| {
-        let [low, high] = range.map(|x| significant(x, 6));
-        format!(", from {low} to {high}")
-    });
-    let start = significant(input.start, 6);
+    let range = input.range;
+    let range = range.map_or_else(String::new, |[low, high]| format!(", from {low} to {high}"));
     format!(
-        "input {} [{}]: {start} at the start{range}\n",
+        "input {} [{}]: {} at the start{range}\n",
         input.name(),
-        input.unit()
+        input.unit(),
+        input.start
     )
 }
 
