@@ -49,6 +49,7 @@ mod wording;
 mod written;
 mod wrong_kind;
 
+pub use check::controllers::controllers;
 pub use check::functions::{controls, overshoots};
 pub use check::rarely_intended;
 pub use ends::{Follower, ResolvedEnd, Rotation, Translation};

@@ -7,6 +7,7 @@ pub mod beam_contacts;
 pub mod bodies;
 mod cell_boxes;
 pub mod contact_points;
+mod controllers;
 pub mod crossing;
 pub mod euler_bernoulli_modes;
 pub mod extrema;
@@ -218,6 +219,7 @@ impl System {
         faults.extend(self.model.effects.refusals.iter().cloned());
         faults.extend(self.fed_junction());
         faults.extend(self.unheld_start(case));
+        faults.extend(self.unmeasured());
         faults.extend(residual::fourth_order::refusal(&self.model, &self.mesh));
         match faults.is_empty() {
             true => Ok(self),

@@ -244,6 +244,11 @@ impl TimeData {
             && (&self.statics.force, &self.statics.mean) == (&other.statics.force, &other.statics.mean)
     }
 
+    /// Time to which the data belong.
+    pub fn clock(&self) -> SmoothTime {
+        self.clock.unwrap_or(SmoothTime { t: 0.0, within: 0.0 })
+    }
+
     /// Forces the evaluation of all signals by the next update.
     pub fn forget(&mut self) {
         self.clock = None;

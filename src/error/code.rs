@@ -91,6 +91,7 @@ codes! {
     WaterHammer = "W038", "Unresolved water hammer.";
     Boiling = "W040", "A liquid below its vapor pressure.";
     OtherCells = "W041", "Cells differ from those in the middle.";
+    Controller = "W044", "A controller that does not act.";
 }
 
 impl Code {

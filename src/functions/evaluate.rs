@@ -22,6 +22,7 @@ impl Signal {
             Self::Product(factors) => factors
                 .iter()
                 .fold(Jet::constant(1.0), |product, f| product * f.jet(clock)),
+            Self::Controller(controller) => controller.jet(clock),
         }
     }
 
@@ -35,7 +36,7 @@ impl Signal {
     /// of splines, and the end of a sine's smooth start.
     pub fn breaks(&self, until: f64, out: &mut Vec<f64>) {
         match self {
-            Self::Constant(_) | Self::Sine(_) | Self::Sigmoid(_) | Self::Polynomial(_) => {}
+            Self::Constant(_) | Self::Sine(_) | Self::Sigmoid(_) | Self::Polynomial(_) | Self::Controller(_) => {}
             Self::Ramp(ramp) if ramp.duration_s > 0.0 => out.extend([ramp.start_s, ramp.start_s + ramp.duration_s]),
             Self::Ramp(ramp) => out.push(ramp.start_s),
             Self::Table(table) if table.times_s.len() < 2 => {}
@@ -90,7 +91,7 @@ impl Signal {
     pub fn fastest_period_s(&self) -> Option<f64> {
         let scale = match self {
             _ if self.is_constant() => None,
-            Self::Constant(_) | Self::Polynomial(_) => None,
+            Self::Constant(_) | Self::Polynomial(_) | Self::Controller(_) => None,
             Self::Sine(sine) if sine.ramp_cycles > 0.0 => Some(sine.ramp_cycles.min(1.0) / sine.frequency_hz),
             Self::Sine(sine) => Some(1.0 / sine.frequency_hz),
             Self::Sigmoid(sigmoid) => Some(4.0 / sigmoid.steepness_per_s.abs()),
@@ -142,6 +143,7 @@ impl Signal {
             Self::Polynomial(polynomial) => polynomial.coefficients.iter().skip(1).all(|c| *c == 0.0),
             Self::Table(table) => table.curve.is_constant(),
             Self::Sum(parts) | Self::Product(parts) => parts.iter().all(Self::is_constant),
+            Self::Controller(controller) => controller.limits() == [controller.start; 2],
         }
     }
 }

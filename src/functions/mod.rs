@@ -3,6 +3,7 @@
 //! | file | content |
 //! |---|---|
 //! | [`signals`], `evaluate` | functions of time: types, values, derivatives, switching times |
+//! | [`control`] | controllers: laws and outputs |
 //! | `integral` | integrals of functions of time |
 //! | [`profile`] | functions of place: values, integrals, waves |
 //! | `curve` | curves through points, for tables of both |
@@ -12,6 +13,7 @@
 //! | `number_or_object` | JSON format |
 
 pub mod bounds;
+pub mod control;
 mod curve;
 mod evaluate;
 mod integral;

@@ -3,6 +3,7 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
+use super::control::Controller;
 use super::curve::{Interpolation, PiecewiseCurve};
 pub use super::jet::{Jet, SmoothTime};
 use super::number_or_object::number_or_object;
@@ -26,6 +27,8 @@ pub enum Signal {
     Sum(Vec<Signal>),
     /// Product of signals.
     Product(Vec<Signal>),
+    /// Output of a controller.
+    Controller(Box<Controller>),
 }
 
 /// The forms of a signal that are objects.
@@ -46,6 +49,8 @@ pub(super) enum NamedSignal {
     Sum(#[schemars(length(min = 1, max = 1000))] Vec<Signal>),
     /// Product of signals.
     Product(#[schemars(length(min = 1, max = 1000))] Vec<Signal>),
+    /// Output of a controller, which measures a quantity of the run.
+    Controller(Box<Controller>),
 }
 
 /// `amplitude r(min(t f/ramp_cycles, 1)) sin(2 pi f t + phase)`, `r(s) = 10 s^3 - 15 s^4 + 6 s^5`.
@@ -253,5 +258,5 @@ impl Table {
 
 number_or_object!(Signal, NamedSignal, "a number or a named signal such as {\"sine\": {...}}", {
     Sine = "sine", Sigmoid = "sigmoid", Ramp = "ramp", Polynomial = "polynomial",
-    Table = "table", Sum = "sum", Product = "product",
+    Table = "table", Sum = "sum", Product = "product", Controller = "controller",
 });

@@ -11,6 +11,7 @@ pub mod bladder_wall_contact;
 pub mod characteristic;
 pub mod compression;
 pub mod contact;
+mod controllers;
 mod convexity;
 pub mod coupling;
 pub mod duct;
@@ -49,6 +50,7 @@ pub use bladder::AreaLaw;
 pub use bladder_wall_contact::WallClosing;
 pub use compression::Compression;
 pub use contact::{BeamContactLaw, ContactFace, ContactLaw};
+pub use controllers::ControlledInput;
 pub use coupling::CouplingLaw;
 pub use effects::{Decision, EffectScene, EffectSet};
 pub use kinematics::Kinematics;
@@ -105,6 +107,8 @@ pub struct Model {
     pub frame: Option<FrameRotation>,
     /// Fluid and bladders; none for a dry beam.
     pub wet: Option<Wet>,
+    /// Controllers of signals.
+    pub controllers: Vec<ControlledInput>,
     /// Characteristic size of every kind of unknown.
     pub scales: Scales,
     /// True if ends and streams have zero velocity despite their signals: for equilibria, whose time is the load
@@ -233,6 +237,7 @@ impl Model {
             surroundings: AmbientFluid::from_case(case),
             frame: FrameRotation::from_case(case),
             wet,
+            controllers: ControlledInput::all(case),
             scales,
             still: false,
         };

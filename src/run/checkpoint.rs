@@ -5,6 +5,7 @@
 
 use serde::{Deserialize, Serialize};
 
+use super::control_loop::LoopState;
 use super::observe::Observed;
 use super::sensitivity::kept::StoredSensitivities;
 use super::summary::Counters;
@@ -36,6 +37,9 @@ pub struct Checkpoint {
     pub counters: Counters,
     /// Data accumulated by the observer.
     pub observed: Observed,
+    /// States of the controllers before the samples at this time.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub controllers: Vec<LoopState>,
     /// Sensitivities, if the run computes any.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub forward: Option<StoredSensitivities>,
@@ -55,6 +59,9 @@ impl Checkpoint {
         let unknowns = system.layout.len;
         if self.y.len() != unknowns || self.yp.len() != unknowns {
             return fault("has a different number of unknowns than the case");
+        }
+        if self.controllers.len() != system.model.controllers.len() {
+            return fault("has a different number of controllers than the case");
         }
         if self
             .y

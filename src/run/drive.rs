@@ -41,6 +41,14 @@ pub fn drive(case: &Case, model: &Model, asked: Option<f64>) -> Result<PeriodicD
     });
     let name = &case.name;
     if let Some(signal) = endless {
+        let mut controlled = None;
+        signal.each_controller(&mut |one| controlled = Some(&one.name));
+        if let Some(controller) = controlled {
+            return Err(Error::Usage(format!(
+                "{name}: the controller \"{controller}\" is sampled, and the search for a cycle does not stop at samples. Extend the \
+                 run by `slcbeam run` until its cycles repeat, or replace the controller by a signal"
+            )));
+        }
         let mut kinks = None;
         kinked_period(&signal, &mut kinks);
         if let Some(period) = kinks {
@@ -108,6 +116,7 @@ pub fn settled(signal: &Signal) -> Signal {
         Signal::Polynomial(polynomial) => Signal::Polynomial(polynomial.clone()),
         Signal::Table(table) if table.repeat => Signal::Table(table.clone()),
         Signal::Table(table) => Signal::Constant(table.values.last().copied().unwrap_or(0.0)),
+        Signal::Controller(controller) => Signal::Controller(controller.clone()),
         Signal::Sum(terms) => Signal::Sum(terms.iter().map(settled).collect()),
         Signal::Product(factors) => Signal::Product(factors.iter().map(settled).collect()),
     }
@@ -126,7 +135,7 @@ pub fn settles_at(signal: &Signal) -> f64 {
     let latest = |times: &mut dyn Iterator<Item = f64>| times.fold(0.0, f64::max);
     match signal {
         _ if signal.is_constant() => 0.0,
-        Signal::Constant(_) | Signal::Polynomial(_) => 0.0,
+        Signal::Constant(_) | Signal::Polynomial(_) | Signal::Controller(_) => 0.0,
         Signal::Sine(sine) => sine.ramp_cycles / sine.frequency_hz,
         Signal::Sigmoid(s) => (s.midpoint_s + ROUND_OFF / s.steepness_per_s.abs()).max(0.0),
         Signal::Ramp(ramp) => (ramp.start_s + ramp.duration_s).max(0.0),
@@ -148,7 +157,7 @@ fn kinked_period(signal: &Signal, found: &mut Option<f64>) {
 /// True if a settled signal is periodic and without kinks or jumps. No step of a cycle ends at kinks or jumps.
 fn is_periodic(signal: &Signal) -> bool {
     match signal {
-        Signal::Polynomial(_) => false,
+        Signal::Polynomial(_) | Signal::Controller(_) => false,
         Signal::Table(table) => !table.repeat || table.is_smooth(),
         Signal::Sum(parts) | Signal::Product(parts) => parts.iter().all(is_periodic),
         _ => true,

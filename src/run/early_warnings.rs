@@ -7,6 +7,7 @@ use crate::case::schema::Case;
 use crate::discrete::{System, resolution};
 use crate::error::Code;
 use crate::model::{audit, characteristic};
+use crate::run::control_loop;
 
 /// Characteristic numbers by name.
 type Numbers = BTreeMap<String, f64>;
@@ -61,6 +62,7 @@ pub fn at_rest(case: &Case, system: &System) -> Vec<String> {
     let mut of_case = audit::lasting(case, &system.model, &numbers);
     let of_motion = [Code::FewOutputs, Code::FastFlow, Code::Strain].map(Code::id);
     of_case.retain(|warning| !of_motion.iter().any(|id| warning.starts_with(id)));
+    of_case.extend(control_loop::held(system));
     with_the_mesh(of_case, case, system, &numbers, true)
 }
 

@@ -2,6 +2,7 @@
 
 pub mod bands;
 pub mod checkpoint;
+pub mod control_loop;
 pub mod cubic;
 pub mod drive;
 mod drives;

@@ -14,23 +14,50 @@ pub struct ScheduledStop {
     pub switches: bool,
     /// True if a checkpoint is due here.
     pub checkpoint: bool,
+    /// True if a controller takes a sample here.
+    pub samples: bool,
 }
+
+impl ScheduledStop {
+    /// A stop at a time [s] for nothing yet.
+    fn at(t: f64) -> Self {
+        Self {
+            t,
+            switches: false,
+            checkpoint: false,
+            samples: false,
+        }
+    }
+}
+
+/// Part of a run within which two stops coincide.
+pub const CLOSEST: f64 = 1e-9;
 
 /// All stops of a run in order, its end last.
 pub fn stops(case: &Case, model: &Model) -> Vec<ScheduledStop> {
     let end = case.time.end_s;
-    let closest = 1e-9 * end;
+    let closest = CLOSEST * end;
     let mut switches = Vec::new();
     model.each_signal(|s| s.breaks(end, &mut switches));
-    let stop = |t, [switches, checkpoint]: [bool; 2]| ScheduledStop {
-        t,
-        switches,
-        checkpoint,
+    let switch = |t| ScheduledStop {
+        switches: true,
+        ..ScheduledStop::at(t)
     };
-    let mut all: Vec<ScheduledStop> = switches.into_iter().map(|t| stop(t, [true, false])).collect();
+    let mut all: Vec<ScheduledStop> = switches.into_iter().map(switch).collect();
+    let samples = model
+        .controllers
+        .iter()
+        .flat_map(|one| one.controller.sample_times(end));
+    all.extend(samples.map(|t| ScheduledStop {
+        samples: true,
+        ..ScheduledStop::at(t)
+    }));
     if let Some(interval) = case.time.checkpoint_interval_s {
         let count = (end / interval).ceil() as u64;
-        all.extend((1..count).map(|k| stop(k as f64 * interval, [false, true])));
+        all.extend((1..count).map(|k| ScheduledStop {
+            checkpoint: true,
+            ..ScheduledStop::at(k as f64 * interval)
+        }));
     }
     all.retain(|s| s.t > closest && s.t < end - closest);
     all.sort_by(|a, b| a.t.total_cmp(&b.t));
@@ -39,10 +66,11 @@ pub fn stops(case: &Case, model: &Model) -> Vec<ScheduledStop> {
         if same {
             kept.switches |= next.switches;
             kept.checkpoint |= next.checkpoint;
+            kept.samples |= next.samples;
         }
         same
     });
-    all.push(stop(end, [false; 2]));
+    all.push(ScheduledStop::at(end));
     all
 }
 

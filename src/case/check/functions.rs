@@ -243,7 +243,7 @@ pub(super) fn each_part<'s>(pointer: &str, signal: &'s Signal, visit: &mut dyn F
     }
 }
 
-fn part_faults(pointer: &str, signal: &Signal, end: f64, faults: &mut Violations) {
+pub(super) fn part_faults(pointer: &str, signal: &Signal, end: f64, faults: &mut Violations) {
     match signal {
         Signal::Sine(sine) if sine.frequency_hz > HIGHEST_FREQUENCY => {
             let what = format!("{} Hz is not a plausible frequency", plain(sine.frequency_hz));

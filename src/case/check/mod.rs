@@ -4,6 +4,7 @@ mod attachments;
 mod bladders;
 mod coefficients;
 mod contacts;
+pub mod controllers;
 mod ends;
 mod fluid;
 pub mod functions;
@@ -53,6 +54,7 @@ const RULES: &[(Rule, &[&str])] = &[
     (rotating_frame::check, &["beam", "loads", "surroundings"]),
     (probes::step, &["step_response", "time"]),
     (functions::check, &["time"]),
+    (controllers::check, &["time"]),
     (start::check, &["beam", "bladders", "ends", "start", "time"]),
     (time::check, &[]),
     (

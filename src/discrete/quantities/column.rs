@@ -25,6 +25,11 @@ impl HistoryColumn {
         };
         format!("{}_{unit}", self.name)
     }
+
+    /// True if a name is that of the column, with or without its unit.
+    pub fn is_named(&self, name: &str) -> bool {
+        self.name == name || self.key() == name || key(&self.name, self.unit) == name
+    }
 }
 
 impl From<Observable> for HistoryColumn {

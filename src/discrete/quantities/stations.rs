@@ -1,15 +1,25 @@
 //! Quantities of each port, accumulator, contact and reaction, and, for states at rest, of each bladder.
 
 use super::evaluate::StateView;
-use super::probes::{HistoryColumn, key};
-use super::reactions;
+use super::probes::{self, HistoryColumn, key};
+use super::{Group, Observable, reactions};
 use crate::case::wiring::BladderLabels;
 use crate::discrete::ledger::ports;
 use crate::discrete::{FluidMesh, System, beam_contacts, contact_points};
+use crate::model::ControlledInput;
 use crate::model::network::LinkKind;
 
 /// Columns of all ports, accumulators, contacts and reactions of a system; with `at_rest` those of a state at rest.
 pub fn columns(system: &System, at_rest: bool) -> Vec<HistoryColumn> {
+    let mut all = of_state(system, at_rest);
+    if !at_rest {
+        all.extend(of_controllers(system));
+    }
+    all
+}
+
+/// The columns without those of controllers.
+fn of_state(system: &System, at_rest: bool) -> Vec<HistoryColumn> {
     let mut all = of_network(system, at_rest);
     all.extend(reactions::columns(system, at_rest));
     let contacts = &system.model.contacts;
@@ -53,6 +63,59 @@ pub fn columns(system: &System, at_rest: bool) -> Vec<HistoryColumn> {
         });
     }
     all
+}
+
+/// Output and setpoint of every controller.
+fn of_controllers(system: &System) -> Vec<HistoryColumn> {
+    let controllers = &system.model.controllers;
+    let outputs: Vec<HistoryColumn> = short("controller", controllers.iter().map(|one| &one.controller.name))
+        .into_iter()
+        .zip(controllers)
+        .map(|((name, short), one)| HistoryColumn {
+            name: format!("{short}_output"),
+            unit: one.unit,
+            about: format!("output of the controller \"{name}\""),
+        })
+        .collect();
+    let others = if controllers.is_empty() {
+        vec![]
+    } else {
+        of_state(system, false)
+    };
+    let own = Observable::recorded(system).into_iter().map(HistoryColumn::from);
+    let measurable: Vec<HistoryColumn> = own
+        .chain(others)
+        .chain(outputs.iter().cloned())
+        .chain(probes::columns(system))
+        .collect();
+    let mut all = vec![];
+    for (output, ControlledInput { controller, .. }) in outputs.into_iter().zip(controllers) {
+        let measured = measurable.iter().find(|one| one.is_named(&controller.measures));
+        let setpoint = HistoryColumn {
+            name: format!("{}_setpoint", output.name.trim_end_matches("_output")),
+            unit: measured.map_or("1", |one| one.unit),
+            about: format!("setpoint of the controller \"{}\"", controller.name),
+        };
+        all.extend([output, setpoint]);
+    }
+    all
+}
+
+/// Columns that a controller may measure, with their indices among all columns of the history: not its time, the residual of its balance, and
+/// setpoints.
+pub fn measurable(system: &System) -> Vec<(usize, HistoryColumn)> {
+    let own = Observable::recorded(system);
+    let of_run = own.iter().map(|one| matches!(one.group(), Group::Time | Group::Open));
+    let stations = columns(system, false);
+    let inputs = 2 * system.model.controllers.len();
+    let first = stations.len() - inputs;
+    let left_out: Vec<bool> = of_run
+        .chain((0..stations.len()).map(|k| k >= first && (k - first) % 2 == 1))
+        .collect();
+    let own = own.iter().map(|one| HistoryColumn::from(*one));
+    let all = own.chain(stations).chain(probes::columns(system)).enumerate();
+    all.filter(|(k, _)| !left_out.get(*k).copied().unwrap_or(false))
+        .collect()
 }
 
 fn of_network(system: &System, at_rest: bool) -> Vec<HistoryColumn> {
@@ -193,6 +256,13 @@ pub fn values(look: &StateView, integrals: Option<&[f64]>, out: &mut [f64]) {
         let felt = beam_contacts::felt(look.system, &look.w, number);
         put(felt.normal);
         put(felt.depth);
+    }
+    if integrals.is_some() {
+        let clock = look.now.clock();
+        for ControlledInput { controller, .. } in &look.system.model.controllers {
+            put(controller.output(clock));
+            put(controller.setpoint.jet(clock).value);
+        }
     }
 }
 

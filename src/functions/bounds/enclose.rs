@@ -22,12 +22,13 @@ impl Bounded for Signal {
             Self::Table(table) => table.span(from, to),
             Self::Sum(terms) => JetSpan::sum(terms.iter().map(|term| term.span(from, to))),
             Self::Product(factors) => JetSpan::product(factors.iter().map(|factor| factor.span(from, to))),
+            Self::Controller(_) => JetSpan::at(self.exactly(from, from)),
         }
     }
 
     fn is_elementary(&self) -> bool {
         match self {
-            Self::Constant(_) | Self::Sigmoid(_) | Self::Ramp(_) | Self::Table(_) => true,
+            Self::Constant(_) | Self::Sigmoid(_) | Self::Ramp(_) | Self::Table(_) | Self::Controller(_) => true,
             Self::Sine(sine) => sine.ramp_cycles <= 0.0,
             Self::Polynomial(polynomial) => polynomial.coefficients.len() < 3,
             Self::Sum(parts) | Self::Product(parts) => matches!(parts.as_slice(), [one] if one.is_elementary()),

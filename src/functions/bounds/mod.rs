@@ -70,12 +70,13 @@ pub struct LimitExcess {
 impl Signal {
     /// Range of the values between two instants [s].
     pub fn range(&self, from: f64, to: f64) -> Interval {
-        let to = self.repeats_within(from, to);
-        let (range, limited) = search::range(&IntervalSearch::new(self, from, to));
+        let this = &*self.spanned(to);
+        let to = this.repeats_within(from, to);
+        let (range, limited) = search::range(&IntervalSearch::new(this, from, to));
         if !limited {
             return range;
         }
-        let (offset, [swing, ..]) = tones::together(self, from, to);
+        let (offset, [swing, ..]) = tones::together(this, from, to);
         let around = Interval {
             low: offset - swing,
             high: offset + swing,
@@ -85,7 +86,8 @@ impl Signal {
 
     /// Largest magnitudes until `end` [s].
     pub fn largest(&self, end: f64) -> SignalSizes {
-        memo::found(&LARGEST, self, [end, 0.0], || self.search_largest(end))
+        let this = &*self.spanned(end);
+        memo::found(&LARGEST, this, [end, 0.0], || this.search_largest(end))
     }
 
     fn search_largest(&self, end: f64) -> SignalSizes {
@@ -112,9 +114,10 @@ impl Signal {
 
     /// Magnitudes that the signal reaches until `end` [s]: lower bounds of those of [`Self::largest`].
     pub fn reaches(&self, end: f64) -> SignalSizes {
-        memo::found(&REACHED, self, [end, 0.0], || {
-            let to = self.repeats_within(0.0, end);
-            let [value, rate, acceleration, jerk] = reached(&IntervalSearch::new(self, 0.0, to));
+        let this = &*self.spanned(end);
+        memo::found(&REACHED, this, [end, 0.0], || {
+            let to = this.repeats_within(0.0, end);
+            let [value, rate, acceleration, jerk] = reached(&IntervalSearch::new(this, 0.0, to));
             SignalSizes {
                 value,
                 rate,
@@ -130,10 +133,11 @@ impl Signal {
     pub fn jumps(&self, end: f64, held: f64) -> [f64; 4] {
         let mut jumps = [0.0_f64; 4];
         let mut before = [held, 0.0, 0.0, 0.0];
-        for (from, to) in self.smooth_intervals(end) {
+        let this = &*self.spanned(end);
+        for (from, to) in this.smooth_intervals(end) {
             let within = 0.5 * (from + to);
             let [a, b] = [from, to].map(|t| {
-                let jet = self.exactly(t, within);
+                let jet = this.exactly(t, within);
                 [jet.value, jet.rate, jet.acceleration, jet.jerk]
             });
             for k in 0..4 {
@@ -146,8 +150,9 @@ impl Signal {
 
     /// Excitation of oscillators until `end` [s], from rest at the value `held`.
     pub fn excitation(&self, end: f64, held: f64) -> Excitation {
-        memo::found(&EXCITATION, self, [end, held], || {
-            Excitation::from_signal(self, end, held)
+        let this = &*self.spanned(end);
+        memo::found(&EXCITATION, this, [end, held], || {
+            Excitation::from_signal(this, end, held)
         })
     }
 
@@ -164,8 +169,9 @@ impl Signal {
             [] => tone.gain.abs() * end,
             _ => tone.gain.abs() * Variation::amount(&tone.envelope, end),
         };
-        memo::found(&IMPULSE, self, [end, 0.0], || {
-            tones::Tone::all(self).into_iter().map(of).sum()
+        let this = &*self.spanned(end);
+        memo::found(&IMPULSE, this, [end, 0.0], || {
+            tones::Tone::all(this).into_iter().map(of).sum()
         })
     }
 
@@ -186,15 +192,16 @@ impl Signal {
             };
             tone.gain.abs() * amount.min(swings)
         };
-        tones::Tone::all(self).iter().map(of).sum()
+        tones::Tone::all(&self.spanned(end)).iter().map(of).sum()
     }
 
     /// Largest magnitude until `end` [s], and the smaller of it and `∫ |s| dt` over `time` [s], which is smaller for
     /// short pulses. The integral is an estimate from samples that resolve the highest tone; [`Self::impulse`] is a
     /// bound, but ignores cancellation of terms.
     pub fn lasting(&self, end: f64, time: f64) -> [f64; 2] {
-        let size = self.largest(end).value;
-        let tone = self.highest_tone_hz().unwrap_or(0.0);
+        let this = &*self.spanned(end);
+        let size = this.largest(end).value;
+        let tone = this.highest_tone_hz().unwrap_or(0.0);
         let over = |(from, to): (f64, f64)| {
             let places = (PLACES * ((to - from) * tone + 1.0)).min(MOST_PLACES).ceil();
             let within = |k: f64| match places < MOST_PLACES {
@@ -203,18 +210,19 @@ impl Signal {
                 false => (k * GOLDEN).fract(),
             };
             let at = |k: f64| from + (to - from) * (k + within(k)) / places;
-            let sum: f64 = (0..places as u32).map(|k| self.value(at(f64::from(k))).abs()).sum();
+            let sum: f64 = (0..places as u32).map(|k| this.value(at(f64::from(k))).abs()).sum();
             sum * (to - from) / places
         };
-        let amount: f64 = self.smooth_intervals(end).into_iter().map(over).sum();
+        let amount: f64 = this.smooth_intervals(end).into_iter().map(over).sum();
         [size, size.min(amount / time)]
     }
 
     /// First found violation of the limits until `end` [s]; none if the value certainly, or after a long search
     /// probably, stays within.
     pub fn leaves(&self, low: f64, high: f64, end: f64) -> Option<LimitExcess> {
-        let to = self.repeats_within(0.0, end);
-        let search = IntervalSearch::new(self, 0.0, to);
+        let this = &*self.spanned(end);
+        let to = this.repeats_within(0.0, end);
+        let search = IntervalSearch::new(this, 0.0, to);
         let beyond = |x: f64| (x - high).max(low - x);
         let found = search.largest(
             |span| beyond(span.0[0].high).max(beyond(span.0[0].low)),
@@ -223,19 +231,21 @@ impl Signal {
         );
         (found.reached > 0.0).then(|| LimitExcess {
             t: found.place,
-            value: self.value(found.place),
+            value: this.value(found.place),
         })
     }
 
     /// An instant until `end` [s] at which value, rate or acceleration is or may be infinite or NaN.
     pub fn overflows(&self, end: f64) -> Option<f64> {
-        let to = self.repeats_within(0.0, end);
-        overflows(&IntervalSearch::new(self, 0.0, to))
+        let this = &*self.spanned(end);
+        let to = this.repeats_within(0.0, end);
+        overflows(&IntervalSearch::new(this, 0.0, to))
     }
 
     /// An instant until `end` [s] at which the magnitude is nearly the largest.
     pub fn peak(&self, end: f64) -> f64 {
-        let to = self.repeats_within(0.0, end);
-        IntervalSearch::new(self, 0.0, to).size(0).place
+        let this = &*self.spanned(end);
+        let to = this.repeats_within(0.0, end);
+        IntervalSearch::new(this, 0.0, to).size(0).place
     }
 }

@@ -35,7 +35,7 @@ impl Signal {
     fn settles(&self, end: f64, rest: &mut f64, frequencies: &mut Vec<f64>) {
         match self {
             _ if self.is_constant() => {}
-            Self::Constant(_) => {}
+            Self::Constant(_) | Self::Controller(_) => {}
             Self::Sine(sine) => {
                 *rest = rest.max(sine.ramp_cycles.max(0.0) / sine.frequency_hz);
                 frequencies.push(sine.frequency_hz);

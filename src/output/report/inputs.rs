@@ -23,7 +23,9 @@ pub fn columns(case: &Case, times: &[f64], joined: bool) -> Vec<Value> {
     let mut all = loads(case);
     all.extend(ends.iter().flat_map(|(name, end)| of_end(name, end)));
     all.extend(network.iter().flat_map(of_network));
-    let changing = all.into_iter().filter(|(.., signal)| !signal.is_constant()).take(MOST);
+    // outputs of controllers are columns of the history
+    let follows = |signal: &Signal| !signal.is_constant() && !signal.is_controlled();
+    let changing = all.into_iter().filter(|(.., signal)| follows(signal)).take(MOST);
     let column = |(number, (label, unit, signal)): (usize, Input)| {
         json!({
             "name": format!("input_{}", number + 1), "unit": unit, "group": "What acts", "label": label,

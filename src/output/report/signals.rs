@@ -51,6 +51,7 @@ pub fn describe(signal: &Signal, unit: &str) -> String {
             short(table.period_s().unwrap_or_default(), "s")
         ),
         Signal::Table(table) => format!("curve through {}", counted(table.times_s.len() as u64, "point")),
+        Signal::Controller(one) => format!("set by the controller \"{}\"", one.name),
         Signal::Sum(parts) => brief(all(parts, unit).join(" + ")),
         Signal::Product(parts) => brief(all(parts, "1").join(" × ")),
     }

@@ -1,10 +1,12 @@
 //! Start of a run: its state and sensitivities, from the start of the case or from a checkpoint.
 
+use super::faults::inconsistent;
 use super::{End, Run};
 use crate::case::schema::EquilibriumStart;
 use crate::dae::{BeamDae, Dae};
 use crate::discrete::System;
 use crate::error::{Result, SolverError};
+use crate::integrate::{StartOptions, consistent_start};
 use crate::run::checkpoint::Checkpoint;
 use crate::run::equilibrium::{self, EquilibriumOptions};
 use crate::run::observe::Observer;
@@ -74,6 +76,39 @@ impl Run<'_> {
         };
         forward.begin(dae)?;
         forward.complete(dae, 0.0, [&self.state, &self.rates])
+    }
+
+    /// Computes the consistent state in which the run starts. Controllers take their first sample of that with their first outputs, and
+    /// begin with those of the sample.
+    pub(super) fn consistent_start(&mut self, dae: &mut BeamDae) -> std::result::Result<(), SolverError> {
+        let options = StartOptions::default();
+        let mut start = |dae: &mut BeamDae, [state, rates]: [&mut Vec<f64>; 2]| {
+            consistent_start(dae, 0.0, state, rates, &options).map_err(|failure| inconsistent(0.0, &failure))
+        };
+        start(dae, [&mut self.state, &mut self.rates])?;
+        if self
+            .control
+            .sample(dae, 0.0, [&self.state, &self.rates, &self.carried])?
+        {
+            start(dae, [&mut self.state, &mut self.rates])?;
+        }
+        Ok(())
+    }
+
+    /// Passes the stop of a checkpoint once more.
+    pub(super) fn switch_again(&mut self, dae: &mut BeamDae, from: &Checkpoint, ahead: f64) -> Option<SolverError> {
+        self.control.take_up(dae, &from.controllers);
+        match self
+            .control
+            .sample(dae, from.t, [&self.state, &self.rates, &self.carried])
+        {
+            Ok(changes) if changes || self.stops[from.stop].switches => self.switch(dae, from.t, ahead),
+            Ok(_) => {
+                dae.enter_smooth_interval(ahead);
+                None
+            }
+            Err(fault) => Some(fault),
+        }
     }
 
     /// Allocates the arrays for the values of a system.

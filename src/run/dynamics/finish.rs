@@ -129,6 +129,7 @@ impl Run<'_> {
         }
         s.warnings.extend(self.held.take().map(|w| Code::OrderHeld.warning(w)));
         s.warnings.extend(self.observer.warnings());
+        s.warnings.extend(self.control.warnings());
         self.spent(|wall| &mut wall.output);
         self.summary.wall_s.close(self.laps.total());
         Outcome {

@@ -13,10 +13,11 @@ use std::collections::BTreeMap;
 use std::time::Instant;
 
 pub use continued::{ContinuedDerivatives, go_on};
-use faults::{fault, inconsistent, stalled, too_many_steps};
+use faults::{fault, stalled, too_many_steps};
 use stall::StallDetector;
 
 use super::checkpoint::Checkpoint;
+use super::control_loop::ControlLoop;
 use super::growth::LinearProperties;
 use super::max_step::StepLimits;
 use super::method::{self, Integrator, IntegratorOptions};
@@ -30,7 +31,7 @@ use crate::case::{inherited, parameter::Parameter, schema::Case};
 use crate::dae::BeamDae;
 use crate::discrete::{System, start};
 use crate::error::{Result, SolverError};
-use crate::integrate::{StartOptions, consistent_start, halt};
+use crate::integrate::halt;
 use crate::model::{audit, characteristic};
 
 /// A run that ended, in whatever way; everything up to its end is recorded.
@@ -87,6 +88,7 @@ pub fn resume(case: &Case, system: System, checkpoint: &Checkpoint, recorder: &m
 struct Run<'a> {
     case: &'a Case,
     observer: Observer,
+    control: ControlLoop,
     outputs: Outputs,
     stops: Vec<ScheduledStop>,
     strides: StepLimits,
@@ -151,6 +153,7 @@ impl<'a> Run<'a> {
         let mut run = Self {
             case,
             observer: Observer::new(case, &system, interval),
+            control: ControlLoop::new(&system, case.time.end_s),
             outputs: Outputs::new(case),
             stops: schedule::stops(case, &system.model),
             strides,
@@ -272,12 +275,9 @@ impl Run<'_> {
             _ => dae.enter_smooth_interval(ahead),
         }
         let before = from.and_then(|c| self.before(&mut dae, c));
-        let consistent = match from.map(|c| self.stops[c.stop].switches) {
-            Some(true) => self.switch(&mut dae, t, ahead),
-            Some(false) => None,
-            None => consistent_start(&mut dae, t, &mut self.state, &mut self.rates, &StartOptions::default())
-                .map_err(|failure| inconsistent(t, &failure))
-                .err(),
+        let consistent = match from {
+            Some(checkpoint) => self.switch_again(&mut dae, checkpoint, ahead),
+            None => self.consistent_start(&mut dae).err(),
         };
         let consistent = consistent.or_else(|| match from {
             None => self.begin_forward(&mut dae).err(),

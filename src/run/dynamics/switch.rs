@@ -52,8 +52,9 @@ impl Run<'_> {
     ) -> Result<Option<SolverError>> {
         let ScheduledStop {
             t,
-            switches,
+            mut switches,
             checkpoint,
+            samples,
         } = self.stops[stop];
         self.spent(|wall| &mut wall.watching);
         self.state.copy_from_slice(solver.y());
@@ -61,10 +62,23 @@ impl Run<'_> {
         if let Err(failure) = solver.integrals(None, &mut self.integrals) {
             return Ok(Some(fault(&failure)));
         }
-        for (carried, more) in self.carried.iter_mut().zip(&self.integrals) {
-            *carried += more;
+        for (total, carried) in self.integrals.iter_mut().zip(&self.carried) {
+            *total += carried;
         }
-        solver.dae_mut().settle(t, &mut self.carried);
+        let dae = solver.dae_mut();
+        dae.settle(t, &mut self.integrals);
+        let controllers = self.control.states.clone();
+        if samples {
+            match self.control.sample(dae, t, [&self.state, &self.rates, &self.integrals]) {
+                Ok(changes) => switches |= changes,
+                Err(fault) => return Ok(Some(fault)),
+            }
+        }
+        if !(switches || checkpoint) {
+            dae.enter_smooth_interval(0.5 * (t + next));
+            return Ok(None);
+        }
+        self.carried.copy_from_slice(&self.integrals);
         let before = match (&mut self.forward, solver.ida_mut()) {
             (Some(forward), Some(ida)) => match forward.leave(ida, t, [&self.state, &self.rates]) {
                 Ok(before) => Some(before),
@@ -89,6 +103,7 @@ impl Run<'_> {
                     ..self.summary.solver.clone()
                 },
                 observed: self.observer.seen.clone(),
+                controllers,
                 forward: self.forward.as_ref().map(ForwardSensitivities::kept),
             })?;
             self.spent(|wall| &mut wall.output);

@@ -89,6 +89,13 @@ impl<'a> ForwardSensitivities<'a> {
     pub fn new(case: &Case, dae: BeamDae, by: DerivativeParameters<'a>) -> Result<(Self, BeamDae)> {
         let (mut perturbed, mut all_cases, mut all_stops) = (vec![], vec![], vec![]);
         let parameters = by.parameters;
+        if let Some(one) = dae.system().model.controllers.first() {
+            return Err(Error::Usage(format!(
+                "derivatives of a run with the controller \"{}\": its samples have none. Use `slcbeam sweep --vary`, or a signal in \
+                 place of the controller",
+                one.controller.name
+            )));
+        }
         let change = parameter::change(case);
         let own = schedule::stops(case, &dae.system().model);
         for (k, parameter) in parameters.iter().enumerate() {

@@ -100,6 +100,9 @@ pub(super) fn taken(case: &Case, inputs: &[SimulatorInput]) -> Result<(Case, Sys
                 known.join(", ")
             )));
         };
+        if signal.is_controlled() {
+            return Err(usage("a controller of the case sets it".into()));
+        }
         if held.iter().any(|one| one.input.pointer == *pointer) {
             return Err(usage("it is given twice".into()));
         }

@@ -24,6 +24,7 @@ use crate::error::{Error, Result, SolverError};
 use crate::functions::{PiecewiseCurve, Signal};
 use crate::integrate::{StartOptions, Starter};
 use crate::onestep::OneStep;
+use crate::run::control_loop::ControlLoop;
 use crate::run::early_warnings;
 use crate::run::equilibrium;
 use crate::run::max_step::StepLimits;
@@ -46,6 +47,7 @@ pub struct Simulator {
     starter: Starter,
     consistent: StartOptions,
     observer: Observer,
+    control: ControlLoop,
     columns: Vec<HistoryColumn>,
     stops: Vec<ScheduledStop>,
     next: usize,
@@ -94,6 +96,15 @@ impl Simulator {
             .start(&mut dae, 0.0, &mut state, &mut rates, &StartOptions::default())
             .map_err(|failure| solver(inconsistent(0.0, &failure)))?;
         let zeros = vec![0.0; dae.integrals()];
+        let mut control = ControlLoop::new(dae.system(), case.time.end_s);
+        if control
+            .sample(&mut dae, 0.0, [&state, &rates, &zeros])
+            .map_err(solver)?
+        {
+            starter
+                .start(&mut dae, 0.0, &mut state, &mut rates, &StartOptions::default())
+                .map_err(|failure| solver(inconsistent(0.0, &failure)))?;
+        }
         let mut this = Self {
             of,
             known,
@@ -105,6 +116,7 @@ impl Simulator {
             },
             solver: OneStep::new(dae, 0.0, &state, &rates, &options).map_err(|failure| solver(fault(&failure)))?,
             observer,
+            control,
             columns,
             stops,
             next: 0,
@@ -169,6 +181,7 @@ impl Simulator {
         let mut all = self.known.clone();
         all.extend(resolution::warnings(&self.case, &system));
         all.extend(self.observer.warnings());
+        all.extend(self.control.warnings());
         all
     }
 
@@ -248,7 +261,10 @@ impl Simulator {
         let t = self.time();
         self.leave_stretch()?;
         let behind = self.behind(t);
+        let dae = self.solver.dae_mut();
+        dae.enter_smooth_interval(behind);
         if self.stands_at_stop() {
+            self.control_stop(t)?;
             self.next += 1;
         }
         let dae = self.solver.dae_mut();
@@ -267,7 +283,6 @@ impl Simulator {
             }
             one.path = path;
         }
-        dae.enter_smooth_interval(behind);
         self.switch(t)?;
         let dae = self.solver.dae_mut();
         for (one, value) in self.held.iter_mut().zip(values) {
@@ -288,12 +303,19 @@ impl Simulator {
         self.enter()
     }
 
+    /// Takes the samples of controllers at a stop at time `t` [s], on its left side. Returns true if an output changes.
+    fn control_stop(&mut self, t: f64) -> Result<bool> {
+        let before = [&self.state[..], &self.rates, &self.carried];
+        self.control.sample(self.solver.dae_mut(), t, before).map_err(solver)
+    }
+
     /// Passes the stop that the simulation has reached.
     fn pass(&mut self) -> Result<()> {
         let ScheduledStop { t, switches, .. } = self.stops[self.next];
         self.leave_stretch()?;
+        let changes = self.control_stop(t)?;
         self.next += 1;
-        if switches {
+        if switches || changes {
             self.switch(t)?;
         } else {
             let ahead = self.inside();

@@ -7,6 +7,7 @@ use super::{Simulator, fault, inputs, solver};
 use crate::dae::Dae as _;
 use crate::error::{Error, Result};
 use crate::functions::PiecewiseCurve;
+use crate::run::control_loop::LoopState;
 use crate::run::observe::Observed;
 
 /// Data from which a [`Simulator`] of the same case and inputs resumes bit for bit.
@@ -32,6 +33,8 @@ pub struct Snapshot {
     /// Courses of the inputs that must not jump.
     #[serde(default)]
     paths: Vec<PiecewiseCurve>,
+    #[serde(default)]
+    controllers: Vec<LoopState>,
 }
 
 impl Snapshot {
@@ -79,6 +82,7 @@ impl Simulator {
             swings: self.held.iter().map(|one| one.swings).collect(),
             course: self.course,
             paths: self.held.iter().filter_map(|one| one.path.clone()).collect(),
+            controllers: self.control.states.clone(),
         };
         self.restore(&snapshot)?;
         Ok(snapshot)
@@ -97,6 +101,7 @@ impl Simulator {
             && snapshot.observed.row.values().len() == self.columns.len()
             && snapshot.paths.len() == self.held.iter().filter(|one| one.path.is_some()).count()
             && snapshot.paths.iter().all(PiecewiseCurve::is_whole)
+            && snapshot.controllers.len() == self.control.states.len()
             && snapshot.next < self.stops.len()
             && (0.0..f64::INFINITY).contains(&snapshot.size)
             && (0.0..=self.end).contains(&snapshot.t);
@@ -125,6 +130,7 @@ impl Simulator {
             }
             dae.put_signal(&one.places, &one.signal());
         }
+        self.control.take_up(dae, &snapshot.controllers);
         dae.enter_smooth_interval(inside);
         for (one, swings) in self.held.iter_mut().zip(&snapshot.swings) {
             one.swings = *swings;
