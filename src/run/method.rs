@@ -57,6 +57,10 @@ pub fn choose(case: &Case, system: &System) -> MethodChoice {
         schema::Method::Auto if case.solver.max_order != MaxOrder::Auto => {
             ida("max_order is set, which applies to BDF only", bdf())
         }
+        schema::Method::Auto if !system.model.controllers.is_empty() && rtol <= LOOSEST => one_step(
+            TableauMethod::Esdirk46,
+            "controllers restart the integrator at samples; a one-step method needs no history",
+        ),
         schema::Method::Auto => match bdf() {
             order if order.order > 2 => ida("BDF may use its high orders", order),
             order if rtol > LOOSEST => ida(
@@ -220,6 +224,19 @@ impl<D: Dae> Integrator<D> {
     /// Restarts from consistent values at time `t` [s], without the history of past steps.
     pub fn restart(&mut self, t: f64, y: &[f64], yp: &[f64]) -> Result<(), Box<IntegrationError>> {
         either!(self, one => one.restart(t, y, yp))
+    }
+
+    /// Like [`Integrator::restart`], after a small jump: a one-step method keeps its factors and its step size.
+    pub fn go_on(&mut self, t: f64, y: &[f64], yp: &[f64]) -> Result<(), Box<IntegrationError>> {
+        match self {
+            Self::Ida(ida) => ida.restart(t, y, yp),
+            Self::OneStep(one) => {
+                let size = one.size();
+                one.go_on(t, y, yp)?;
+                one.propose(size);
+                Ok(())
+            }
+        }
     }
 
     /// Accepted steps since the integrator was created.

@@ -82,7 +82,7 @@ impl Run<'_> {
     /// begin with those of the sample.
     pub(super) fn consistent_start(&mut self, dae: &mut BeamDae) -> std::result::Result<(), SolverError> {
         let options = StartOptions::default();
-        let mut start = |dae: &mut BeamDae, [state, rates]: [&mut Vec<f64>; 2]| {
+        let start = |dae: &mut BeamDae, [state, rates]: [&mut Vec<f64>; 2]| {
             consistent_start(dae, 0.0, state, rates, &options).map_err(|failure| inconsistent(0.0, &failure))
         };
         start(dae, [&mut self.state, &mut self.rates])?;
