@@ -53,7 +53,7 @@ const ENDS: [(&str, &str); 40] = [
 ];
 
 /// Keys inside a quantity, whose numbers have the unit of the quantity.
-const ALIKE: [&str; 11] = [
+const ALIKE: [&str; 16] = [
     "amplitude",
     "from",
     "to",
@@ -65,6 +65,11 @@ const ALIKE: [&str; 11] = [
     "opening",
     "closing",
     "sum",
+    "start",
+    "lowest",
+    "highest",
+    "output_below",
+    "output_above",
 ];
 
 /// Key without its unit, and the unit in the form of result columns; none without a unit.
@@ -97,7 +102,7 @@ pub fn pointer_unit(pointer: &str) -> &'static str {
         return "1";
     }
     // factors, such as those of profiles, are fractions of another quantity
-    let above = keys.take_while(|key| !["profile", "chains", "links"].contains(key));
+    let above = keys.take_while(|key| !["profile", "chains", "links", "setpoint"].contains(key));
     above.filter_map(key_unit).next().map_or("1", |(_, unit)| unit)
 }
 

@@ -16,6 +16,7 @@ use crate::output::report;
 use crate::results;
 use crate::results::bands::{AttenuationRecord, BandsRecord, GapRecord, LatticeModeRecord, WaveMotion, WaveRecord};
 use crate::run::bands::waves::Lattice;
+use crate::run::control_loop;
 use crate::study::bands::{
     BandGap, BandMode, BandStructure, BandWave, bands as compute, coupling_number, decibel, spectrum,
 };
@@ -79,7 +80,7 @@ fn answer(case: &str, band: [f64; 2], found: &BandStructure) -> BandsRecord {
     let (about, cell) = (&found.lattice.about, &found.lattice.cell);
     let modes = |all: &[BandMode]| -> Vec<LatticeModeRecord> { all.iter().map(mode).collect() };
     let (standing, spectrum) = (modes(&found.standing), modes(&spectrum(&found.lattice, band)));
-    let mut warnings = vec![];
+    let mut warnings = control_loop::held(about.system());
     if let Some(first) = cell.others.first() {
         warnings.push(Code::OtherCells.warning(format!(
             "{} of the beam differ from those in its middle, the first at segment {}: the waves are those of the middle",

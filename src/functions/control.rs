@@ -267,6 +267,13 @@ impl Signal {
         found
     }
 
+    /// True if a controller sets it by jumps at its samples.
+    pub fn jumps_at_samples(&self) -> bool {
+        let mut found = false;
+        self.each_controller(&mut |one| found |= one.hold.is_step());
+        found
+    }
+
     /// Sets the output of the controllers with a name. Returns true if there are any.
     pub fn hold(&mut self, name: &str, state: &ControlState) -> bool {
         match self {

@@ -6,10 +6,12 @@ use serde::{Deserialize, Serialize};
 
 use super::summary::Quantity;
 use super::tracked_value::TrackedValue;
+use crate::case::readable::key_unit;
 use crate::discrete::System;
 use crate::discrete::quantities::stations;
 
-/// Figures of the flow and pressure of every port, and of the pressure in every accumulator, by column of the history.
+/// Figures of the flow and pressure of every port, of the pressure in every accumulator, and of the output of every controller, by column of
+/// the history.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct PortFigures {
     names: Vec<String>,
@@ -24,13 +26,18 @@ pub struct PortFigures {
 
 /// Unit of a figure, by its name.
 pub fn unit(name: &str) -> &'static str {
-    if name.ends_with("_pa") { "Pa" } else { "m^3/s" }
+    match name {
+        output if output.starts_with("controller_") => key_unit(output).map_or("1", |(_, unit)| unit),
+        pressure if pressure.ends_with("_pa") => "Pa",
+        _ => "m^3/s",
+    }
 }
 
 impl PortFigures {
     /// Creates the figures of a system.
     pub fn new(system: &System) -> Self {
-        let (places, names): (Vec<usize>, Vec<String>) = stations::of_fluid(system).unzip();
+        let (places, names): (Vec<usize>, Vec<String>) =
+            stations::of_fluid(system).chain(stations::of_outputs(system)).unzip();
         Self {
             tracks: vec![TrackedValue::default(); names.len()],
             names,

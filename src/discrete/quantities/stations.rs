@@ -230,6 +230,17 @@ pub fn of_fluid(system: &System) -> impl Iterator<Item = (usize, String)> {
         .map(|(place, one)| (place, key(&one.name, one.unit)))
 }
 
+/// Columns of a run for outputs of controllers: their indices, and their names with units.
+pub fn of_outputs(system: &System) -> Vec<(usize, String)> {
+    if system.model.controllers.is_empty() {
+        return vec![];
+    }
+    let all = columns(system, false);
+    let first = all.len() - 2 * system.model.controllers.len();
+    let outputs = all.iter().enumerate().skip(first).step_by(2);
+    outputs.map(|(place, one)| (place, key(&one.name, one.unit))).collect()
+}
+
 /// Writes the values in a state; without integrals those of a state at rest.
 pub fn values(look: &StateView, integrals: Option<&[f64]>, out: &mut [f64]) {
     let mut out = out.iter_mut();

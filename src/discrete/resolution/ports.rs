@@ -82,7 +82,7 @@ pub fn ports(case: &Case, model: &Model, wet: &Wet) -> Vec<PortEffect> {
     let depths = |signal: &Signal, begins: bool| {
         let sudden = |first: &f64| {
             let time = signal.shortest_time_s(end).filter(|time| time * first < SUDDEN);
-            begins || time.is_some() || signal.first_jump(end).is_some()
+            begins || time.is_some() || signal.jumps_at_samples() || signal.first_jump(end).is_some()
         };
         let rung = ringing.filter(sudden).map(|first| RUNG * first);
         // fluid motion that does not penetrate further does not excite the beam
@@ -228,8 +228,12 @@ impl JumpIntoBladder {
             true => begins_with_jump(case, pressure),
             false => pressure.value(0.0) != given_at_start(case, wet, bladder, end),
         };
-        let later = pressure.each_jump(case.time.end_s).map(|[t, ..]| t);
-        let times: Vec<f64> = begins.then_some(0.0).into_iter().chain(later).collect();
+        let end = case.time.end_s;
+        let later = pressure.each_jump(end).map(|[t, ..]| t);
+        let mut times: Vec<f64> = begins.then_some(0.0).into_iter().chain(later).collect();
+        if pressure.jumps_at_samples() {
+            times = vec![0.0, end];
+        }
         let times = [*times.first()?, *times.last()?];
         let name = name.clone();
         (wet.storage[bladder] == Storage::Flowing).then_some(Self { port, name, times })

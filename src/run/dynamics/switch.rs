@@ -129,9 +129,9 @@ impl Run<'_> {
             false => solver.restart(t, &self.state, &self.rates),
         };
         let restarted = restarted.and_then(|()| match (&self.forward, solver.ida_mut()) {
-                    (Some(forward), Some(ida)) => forward.hand_over(ida, true),
-                    _ => Ok(()),
-                });
+            (Some(forward), Some(ida)) => forward.hand_over(ida, true),
+            _ => Ok(()),
+        });
         self.spent(|wall| &mut wall.steps);
         Ok(restarted.err().map(|failure| fault(&failure)))
     }
