@@ -184,10 +184,8 @@ impl Controller {
     pub fn sample(&self, state: &mut ControlState, t: f64, measured: f64) -> bool {
         let first = state.next == 0;
         // the setpoint on the right side of a jump
-        let at = SmoothTime {
-            t,
-            within: t + ROUND_OFF * self.sample_interval_s,
-        };
+        let within = self.sample_time(state.next).max(t) + ROUND_OFF * self.sample_interval_s;
+        let at = SmoothTime { t, within };
         let error = self.setpoint.jet(at).value - measured;
         let output = match &self.law {
             ControlLaw::Pi(law) => law.output(self, error, &mut state.sum),

@@ -2,6 +2,7 @@
 
 #[path = "../common/chance.rs"]
 mod chance;
+mod controllers;
 #[path = "../differences/mod.rs"]
 mod differences;
 mod hammer;

@@ -272,7 +272,7 @@ pub fn values(look: &StateView, integrals: Option<&[f64]>, out: &mut [f64]) {
         let clock = look.now.clock();
         for ControlledInput { controller, .. } in &look.system.model.controllers {
             put(controller.output(clock));
-            put(controller.setpoint.jet(clock).value);
+            put(controller.setpoint.value(clock.t));
         }
     }
 }
