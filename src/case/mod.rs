@@ -36,6 +36,7 @@ mod schema_words;
 pub mod section;
 mod separated;
 mod sets;
+mod spanned_outputs;
 pub mod spans;
 pub mod structure;
 pub mod synonyms;

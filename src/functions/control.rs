@@ -6,6 +6,8 @@
 //!
 //! The measured quantity is that on the left side of the sample. The law gives an output `u_k` for the time until the next sample.
 
+use std::borrow::Cow;
+
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -142,9 +144,10 @@ impl ControlState {
 }
 
 impl Controller {
-    /// Value with its derivatives: the output of the last sample, or that before the first one.
+    /// Value with its derivatives: the output of the last sample, or that before the first one at t = 0.
     pub(super) fn jet(&self, clock: SmoothTime) -> Jet {
         match &self.held {
+            _ if clock.within <= 0.0 => Jet::constant(self.start),
             None => Jet::constant(self.start),
             Some([before, after]) if clock.within < after.start_s => before.jet(clock),
             Some([_, after]) => after.jet(clock),
@@ -288,8 +291,7 @@ impl Signal {
     }
 
     /// The signal with a table in place of each controller, which spans the outputs until `end` [s]: for bounds.
-    pub(super) fn spanned(&self, end: f64) -> std::borrow::Cow<'_, Self> {
-        use std::borrow::Cow;
+    pub(crate) fn spanned(&self, end: f64) -> Cow<'_, Self> {
         match self {
             Self::Controller(one) => Cow::Owned(one.spanned(end)),
             Self::Sum(parts) if self.is_controlled() => Cow::Owned(Self::Sum(

@@ -132,6 +132,8 @@ impl Model {
         let network = ResolvedNetwork::from_case(case)?;
         let mut effects = EffectSet::whole(case, network.as_ref());
         if case.effects != Effects::Full && !case.is_structure() {
+            let case = &*case.with_spanned_outputs();
+            let network = ResolvedNetwork::from_case(case)?;
             let whole = case.network_bladders().zip(network.clone());
             let whole = whole.map(|(bladders, network)| Wet::new(case, bladders, &section, network, &effects));
             effects = EffectSet::choose(
