@@ -166,6 +166,7 @@ fn balances_of_networks_close() {
         ("metamaterial", 0.2),
         ("modulated-metamaterial", 0.2),
         ("raised-tank", 1.0),
+        ("regulated-actuator", 0.5),
         ("relaxation-oscillator", 0.2),
     ] {
         closes(name, end);
@@ -177,6 +178,7 @@ fn balances_of_networks_close() {
 fn balances_of_structures_close() {
     for (name, end) in [
         ("gripper", 0.7),
+        ("bang-bang-gripper", 0.3),
         ("pinch", 1.0),
         ("walker", 0.2),
         ("four-bar", 0.3),
