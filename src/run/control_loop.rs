@@ -19,7 +19,6 @@ pub struct ControlLoop {
     /// Indices of the measured columns in a row of the history.
     places: Vec<usize>,
     row: ObservableRow,
-    valves: bool,
     /// Time within which samples coincide with a stop [s].
     closest: f64,
     /// States of the controllers.
@@ -47,7 +46,6 @@ impl ControlLoop {
                 true => ObservableRow::default(),
                 false => ObservableRow::from_system(system),
             },
-            valves: inputs.iter().any(|one| one.pointer.contains("/opening")),
             closest: 2.0 * CLOSEST * end,
             states: vec![LoopState::default(); inputs.len()],
         }
@@ -56,12 +54,6 @@ impl ControlLoop {
     /// True if there are no controllers.
     pub fn is_empty(&self) -> bool {
         self.controllers.is_empty()
-    }
-
-    /// True if a controller opens and closes valves: flow through a closing valve ends within nanoseconds, and its dissipation falls into
-    /// the first stage of a long step.
-    pub fn sets_valves(&self) -> bool {
-        self.valves
     }
 
     /// Restores the states of a checkpoint, and sets the outputs.

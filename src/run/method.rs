@@ -226,19 +226,6 @@ impl<D: Dae> Integrator<D> {
         either!(self, one => one.restart(t, y, yp))
     }
 
-    /// Like [`Integrator::restart`], after a small jump: a one-step method keeps its factors and its step size.
-    pub fn go_on(&mut self, t: f64, y: &[f64], yp: &[f64]) -> Result<(), Box<IntegrationError>> {
-        match self {
-            Self::Ida(ida) => ida.restart(t, y, yp),
-            Self::OneStep(one) => {
-                let size = one.size();
-                one.go_on(t, y, yp)?;
-                one.propose(size);
-                Ok(())
-            }
-        }
-    }
-
     /// Accepted steps since the integrator was created.
     pub fn steps(&self) -> u64 {
         either!(self, one => one.steps())

@@ -138,7 +138,7 @@ fn a_ramp_moves_a_volume_without_jumps() {
         assert!((part[3] - part[0] - 0.6 * (part[5] - part[0])).abs() < 1e-14);
     }
     let pressure = memory.column("accumulator_vessel_pressure").unwrap();
-    assert!((pressure[160] / 1000.0 - 1.0).abs() < 1e-3, "{}", pressure[160]);
+    assert!((950.0..1000.0).contains(&pressure[160]), "{}", pressure[160]);
     assert!(summary.balances.energy_residual_relative.abs() < 1e-6);
     let error = refused(&[&volume(""), VESSEL]);
     assert!(

@@ -123,15 +123,13 @@ impl Run<'_> {
             }
         }
         self.spent(|wall| &mut wall.consistent_start);
-        let continues = !(checkpoint || self.stops[stop].switches || self.control.sets_valves());
-        let restarted = match continues {
-            true => solver.go_on(t, &self.state, &self.rates),
-            false => solver.restart(t, &self.state, &self.rates),
-        };
-        let restarted = restarted.and_then(|()| match (&self.forward, solver.ida_mut()) {
-            (Some(forward), Some(ida)) => forward.hand_over(ida, true),
-            _ => Ok(()),
-        });
+        let restarted =
+            solver
+                .restart(t, &self.state, &self.rates)
+                .and_then(|()| match (&self.forward, solver.ida_mut()) {
+                    (Some(forward), Some(ida)) => forward.hand_over(ida, true),
+                    _ => Ok(()),
+                });
         self.spent(|wall| &mut wall.steps);
         Ok(restarted.err().map(|failure| fault(&failure)))
     }
