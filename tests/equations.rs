@@ -354,6 +354,21 @@ const INDEX: &[(&str, &str, &str)] = &[
         "beams_pressed_together_overlap_by_the_law",
     ),
     ("[E108]", "tests/structures/ledgers.rs", "ledgers_of_beams_close"),
+    (
+        "[E109]",
+        "tests/components/controllers.rs",
+        "a_sampled_pi_law_follows_its_recursion",
+    ),
+    (
+        "[E110]",
+        "tests/components/controllers.rs",
+        "a_relay_swings_with_the_period_of_its_band",
+    ),
+    (
+        "[E111]",
+        "tests/components/controllers.rs",
+        "a_ramp_moves_a_volume_without_jumps",
+    ),
 ];
 
 #[test]

@@ -21,6 +21,7 @@ use crate::results::response::{
     LinearisedState, OutputDerivatives, PeakDerivatives, PowerCurve, ResponseCurve, ResponseDerivatives, ResponsePeak,
     ResponsePole, ResponseRecord, ResponseValue, ValueDerivatives,
 };
+use crate::run::control_loop;
 use crate::run::response::power::MeanPowers;
 use crate::study::analysis::{AnalysisKind, ResponseAnalysis};
 use crate::study::response::derivatives::{ResponseSensitivity, at_frequencies, differentiate};
@@ -208,14 +209,11 @@ fn answer(case: &str, request: &Request, found: &BandResponse) -> Result<Respons
         return Err(Error::Usage("--output: expected at least one".into()));
     };
     let about = &found.response.about;
+    let unknown = found.unknown.iter();
+    let unknown = unknown.map(|why| Code::ErrorEstimate.warning(format!("not known: {why}")));
     let mut warnings = cautions(found.growing, about.moving());
-    warnings.extend(about.range.iter().cloned());
-    warnings.extend(
-        found
-            .unknown
-            .iter()
-            .map(|why| Code::ErrorEstimate.warning(format!("not known: {why}"))),
-    );
+    warnings.extend(control_loop::held(about.system()));
+    warnings.extend(about.range.iter().cloned().chain(unknown));
     let mut answer = ResponseRecord {
         case: case.into(),
         input: found.response.input.clone(),

@@ -8,8 +8,7 @@ use super::{Dae, EvaluationError, Pattern, PerturbedSystems, RotatedVectors, See
 use crate::discrete::ledger::EnergyRate;
 use crate::discrete::residual::ambient_fluid::mean_direction;
 use crate::discrete::{CompleteState, System, TimeData, Workspace, ledger, residual};
-use crate::functions::control::ControlState;
-use crate::functions::signals::{Signal, SmoothTime};
+use crate::functions::signals::SmoothTime;
 use crate::model::Kinematics;
 use crate::numerics::{Dual, Planar, kernels, wide};
 
@@ -128,24 +127,6 @@ impl BeamDae {
     /// The system being solved.
     pub fn system(&self) -> &System {
         &self.system
-    }
-
-    /// Replaces the signal at the places of [`System::places_of`].
-    pub fn put_signal(&mut self, places: &[usize], given: &Signal) {
-        self.system.put_signal(places, given);
-        self.forget_signals();
-    }
-
-    /// Sets the output of the controller at an index among those of the model.
-    pub fn hold_output(&mut self, controller: usize, state: &ControlState) {
-        self.system.hold_output(controller, state);
-        self.forget_signals();
-    }
-
-    fn forget_signals(&mut self) {
-        self.now.forget();
-        self.before.forget();
-        self.held = None;
     }
 
     /// Selects the smooth interval in which signals are evaluated, by an instant inside it [s].

@@ -1,10 +1,29 @@
-//! Switches: the state after a switch, and the work done in zero time.
+//! Switches: replaced signals, the state after a switch, and the work done in zero time.
 
 use super::BeamDae;
 use crate::discrete::{ledger, residual, start, velocity_jump};
-use crate::functions::signals::SmoothTime;
+use crate::functions::control::ControlState;
+use crate::functions::signals::{Signal, SmoothTime};
 
 impl BeamDae {
+    /// Replaces the signal at the places of [`System::places_of`].
+    pub fn put_signal(&mut self, places: &[usize], given: &Signal) {
+        self.system.put_signal(places, given);
+        self.forget_signals();
+    }
+
+    /// Sets the output of the controller at an index among those of the model.
+    pub fn hold_output(&mut self, controller: usize, state: &ControlState) {
+        self.system.hold_output(controller, state);
+        self.forget_signals();
+    }
+
+    fn forget_signals(&mut self) {
+        self.now.forget();
+        self.before.forget();
+        self.held = None;
+    }
+
     /// Switches at time `t` [s] to signals in the smooth interval around `within`, and converts the scaled unknowns: position and
     /// velocity of the beam remain unchanged. The exception is the velocity jump of a driven end, which is transmitted to sections that
     /// rotate, [`kick`].

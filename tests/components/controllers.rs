@@ -142,7 +142,7 @@ fn a_ramp_moves_a_volume_without_jumps() {
     assert!(summary.balances.energy_residual_relative.abs() < 1e-6);
     let error = refused(&[&volume(""), VESSEL]);
     assert!(
-        error.contains("this input must not jump") && error.contains(r#""hold": "ramp""#),
+        error.contains("this input must not jump") && error.contains(r#"\"hold\": \"ramp\""#),
         "{error}"
     );
 }

@@ -303,12 +303,6 @@ impl Simulator {
         self.enter()
     }
 
-    /// Takes the samples of controllers at a stop at time `t` [s], on its left side. Returns true if an output changes.
-    fn control_stop(&mut self, t: f64) -> Result<bool> {
-        let before = [&self.state[..], &self.rates, &self.carried];
-        self.control.sample(self.solver.dae_mut(), t, before).map_err(solver)
-    }
-
     /// Passes the stop that the simulation has reached.
     fn pass(&mut self) -> Result<()> {
         let ScheduledStop { t, switches, .. } = self.stops[self.next];

@@ -1,9 +1,15 @@
-//! Observes accepted steps as in a run, and ends where a validity limit is exceeded.
+//! Takes samples of controllers, observes accepted steps as in a run, and ends where a validity limit is exceeded.
 
 use super::{Simulator, beyond, fault, narrow, solver};
 use crate::error::Result;
 
 impl Simulator {
+    /// Takes the samples of controllers at a stop at time `t` [s], on its left side. Returns true if an output changes.
+    pub(super) fn control_stop(&mut self, t: f64) -> Result<bool> {
+        let before = [&self.state[..], &self.rates, &self.carried];
+        self.control.sample(self.solver.dae_mut(), t, before).map_err(solver)
+    }
+
     /// Observes the end of an accepted step from time `from` [s], and possible extrema inside. If a validity limit is exceeded, the
     /// simulation remains at that time.
     pub(super) fn watch(&mut self, from: f64, t: f64) -> Result<()> {
