@@ -11,6 +11,7 @@ use slcbeam_section::input::Section;
 use slcbeam_section::three::Spatial;
 
 use super::arguments::CaseArguments;
+use super::inflation;
 use super::interrupt::WallArguments;
 use crate::case::{self, inherited, section};
 use crate::error::{Error, Result};
@@ -31,6 +32,10 @@ pub struct CoefficientsArguments {
     /// Solve the cell in three dimensions too, and say how far the plane one is off
     #[arg(long)]
     pub three_d: bool,
+    /// Follow the section at finite strain to these pressures of the upper row [Pa], rising: free curvature, area, blocked
+    /// moment, and the pressure at which chambers balloon
+    #[arg(long, value_name = "PASCALS", value_delimiter = ',', value_parser = super::inflation::pressure, conflicts_with = "case_file")]
+    pub inflate: Vec<f64>,
     /// Limit of wall time.
     #[command(flatten)]
     pub wall: WallArguments,
@@ -66,13 +71,34 @@ pub fn coefficients(asked: &CoefficientsArguments) -> Result<ExitCode> {
         return write_case(&written, path, asked);
     }
     let found = written.coefficients()?;
-    let energy = written.strain_energy()?;
+    // the polynomial of the energy costs more than the path
+    let energy = if asked.inflate.is_empty() {
+        written.strain_energy()?
+    } else {
+        None
+    };
+    let inflation = inflation::follow(&written, asked)?;
     let spatial = asked.three_d.then(|| written.three_dimensional()).transpose()?;
     super::print(&match asked.json {
-        true => format!("{:#}\n", in_json(&found, spatial.as_ref(), energy.as_ref())?),
-        false => in_words(&written.section, &found, spatial.as_ref()) + &energy.map(of_energy).unwrap_or_default(),
+        true => {
+            let mut all = in_json(&found, spatial.as_ref(), energy.as_ref())?;
+            if let Some(inflation) = &inflation {
+                all["inflation"] = inflation::in_json(inflation, &linear(&found, spatial.as_ref()));
+            }
+            format!("{all:#}\n")
+        }
+        false => {
+            let grown = inflation.map(|inflation| inflation::in_words(&inflation, &linear(&found, spatial.as_ref())));
+            let energy = energy.map(of_energy);
+            in_words(&written.section, &found, spatial.as_ref()) + &energy.or(grown).unwrap_or_default()
+        }
     })?;
     Ok(ExitCode::SUCCESS)
+}
+
+/// Compliance that growths at finite strain multiply: in three dimensions where it is computed.
+fn linear(found: &Coefficients, spatial: Option<&Spatial>) -> [[f64; 4]; 4] {
+    spatial.map_or(found.numbers.compliance, |spatial| spatial.compliance)
 }
 
 /// Number of cells of the beam in a written case.

@@ -15,6 +15,7 @@ mod explain;
 mod export;
 mod fit;
 mod floquet;
+mod inflation;
 mod interrupt;
 mod journal;
 mod mapping;

@@ -6,6 +6,7 @@ use serde_json::Value;
 use slcbeam_section::coefficients::Coefficients;
 use slcbeam_section::error::Error;
 use slcbeam_section::finite::StrainEnergy;
+use slcbeam_section::finite::inflation::Inflation;
 use slcbeam_section::input::Section;
 use slcbeam_section::three::Spatial;
 
@@ -38,6 +39,21 @@ impl SectionFile {
     /// As [`Self::coefficients`].
     pub fn strain_energy(&self) -> Result<Option<StrainEnergy>> {
         self.solved(computed::strain_energy(&self.section))
+    }
+
+    /// Growths of the section at finite strain under pressures of the upper row [Pa].
+    ///
+    /// # Errors
+    /// As [`Self::coefficients`], and a material without law.
+    pub fn inflation(&self, pressures: &[f64]) -> Result<Inflation> {
+        let found = self.solved(self.section.inflate(pressures))?;
+        found.ok_or_else(|| {
+            let what = "--inflate needs a law of the material at finite strain";
+            let fault = Violation::new(Code::Missing, format!("{}/material/law", self.at), what);
+            self.source.fault(vec![fault.allowed(
+                "\"neo_hookean\", {\"mooney_rivlin\": ..}, {\"yeoh\": ..}, or a preset of a material that has a law",
+            )])
+        })
     }
 
     /// Compliance of the section by the cell in three dimensions.

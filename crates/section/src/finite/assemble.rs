@@ -139,19 +139,22 @@ impl FiniteCell {
         if self.side == 0.0 {
             return Some(());
         }
-        let [pitch, height] = self.cell.size;
         let material = &self.cell.materials[0];
-        for [place, weight] in LEGENDRE {
-            for x in [-place * height / 2.0, place * height / 2.0] {
-                let [v, d, dd] =
-                    self.law
-                        .bar(material.shear_modulus(), material.bulk_modulus(), 1.0 + e + kappa * x)?;
-                let w = self.side * pitch * weight * height / 2.0;
-                system.energy += w * v;
-                let by = [1.0, x];
-                for a in 0..2 {
-                    system.by_q[a] += w * d * by[a];
-                    (0..2).for_each(|b| system.corner[a][b] += w * dd * by[a] * by[b]);
+        for &[low, high] in &self.bars {
+            let (middle, half) = ((low + high) / 2.0, (high - low) / 2.0);
+            for [place, weight] in LEGENDRE {
+                for x in [middle - place * half, middle + place * half] {
+                    let stretch = 1.0 + e + kappa * x;
+                    let [v, d, dd] = self
+                        .law
+                        .bar(material.shear_modulus(), material.bulk_modulus(), stretch)?;
+                    let w = self.side * self.cell.size[0] * weight * half;
+                    system.energy += w * v;
+                    let by = [1.0, x];
+                    for a in 0..2 {
+                        system.by_q[a] += w * d * by[a];
+                        (0..2).for_each(|b| system.corner[a][b] += w * dd * by[a] * by[b]);
+                    }
                 }
             }
         }

@@ -18,6 +18,7 @@ use crate::coefficients::Options;
 use crate::dense;
 use crate::error::Error;
 use crate::input::{Row, Section};
+use crate::mesh::Fineness;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -95,13 +96,18 @@ fn sizes(g: [f64; 3]) -> [[f64; 4]; 4] {
 impl Section {
     /// P of the section under the laws of its materials; None if its material has no law.
     pub fn strain_energy(&self) -> Result<Option<StrainEnergy>, Error> {
+        let Some((softer, cell)) = self.nearly_incompressible(Options::default().fineness)? else {
+            return Ok(None);
+        };
+        Experiment::new(&cell, &softer)?.fit().map(Some)
+    }
+
+    /// The section with materials of at most the largest Poisson's ratio for finite strain, and its cell; None without a law.
+    pub(super) fn nearly_incompressible(&self, fineness: Fineness) -> Result<Option<(Section, FiniteCell)>, Error> {
         let Some(law) = self.material.law else {
             return Ok(None);
         };
-        let meshes = self.meshes(&Options {
-            meshes: 1,
-            ..Options::default()
-        })?;
+        let meshes = self.meshes(&Options { fineness, meshes: 1 })?;
         let mut softer = self.clone();
         let materials = softer.regions.iter_mut().map(|region| &mut region.material);
         for material in materials.chain([&mut softer.material]) {
@@ -110,7 +116,7 @@ impl Section {
             material.young_modulus_pa = 2.0 * (1.0 + material.poisson_ratio) * mu;
         }
         let cell = FiniteCell::new(&softer, Cell::new(&softer, &meshes[0]), law)?;
-        Experiment::new(&cell, &softer)?.fit().map(Some)
+        Ok(Some((softer, cell)))
     }
 }
 
@@ -332,7 +338,7 @@ fn is_mirrored(t: &[[f64; 4]; 4]) -> bool {
 }
 
 /// True if the energy is convex in the strains, and areas grow with pressures.
-fn is_stable(tangent: &[[f64; 4]; 4]) -> bool {
+pub(super) fn is_stable(tangent: &[[f64; 4]; 4]) -> bool {
     let positive = |i: usize, sense: f64| {
         let own = [sense * tangent[i][i], sense * tangent[i + 1][i + 1]];
         let cross = tangent[i][i + 1];

@@ -14,6 +14,9 @@
 //! curved beam needs a transverse load kappa N, which acts on the cell at that point. Its effect is 4e-4 of the energy
 //! of a block at 5 % stretch and 27 % strain by bending.
 //!
+//! Layers of another material beside the core are lumped into it: there they are stiffer by the beam's width over l_b.
+//! As bars they would hold stretch and curvature twice, since the core's layer moves across the beam and a bar does not.
+//!
 //! Omega's Hessian is symmetric, and so are all results derived from it.
 
 mod assemble;
@@ -21,6 +24,7 @@ pub mod cavity;
 pub mod element;
 pub mod energy;
 pub mod face;
+pub mod inflation;
 pub mod jet;
 pub mod law;
 mod solve;
@@ -28,7 +32,7 @@ mod solve;
 use crate::cell::respond::{cavity_walls, periodic, solids};
 use crate::cell::{Cell, Kind, Part};
 use crate::error::Error;
-use crate::input::Section;
+use crate::input::{Region, RegionShape, Section};
 use crate::sparse::Pattern;
 use std::sync::OnceLock;
 
@@ -80,6 +84,8 @@ pub struct FiniteCell {
     walls: [Vec<[usize; 3]>; 2],
     /// Width of the side walls over that of the core.
     side: f64,
+    /// Heights between which the side walls are bars: those outside of layers.
+    bars: Vec<[f64; 2]>,
     width: f64,
     nodes: usize,
     /// Areas of the bladders at rest [m^2].
@@ -98,17 +104,22 @@ pub struct State {
 }
 
 impl FiniteCell {
-    /// Finite-strain cell from a cell of the section. With regions, bladders must be as long as the beam is wide, since
-    /// a bar has one material.
-    pub fn new(section: &Section, cell: Cell, law: Law) -> Result<Self, Error> {
+    /// Finite-strain cell from a cell of the section. Where bladders are shorter than the beam is wide, regions must be
+    /// layers.
+    pub fn new(section: &Section, mut cell: Cell, law: Law) -> Result<Self, Error> {
         let side = section.width_m / section.bladders.length_m - 1.0;
-        if side > 0.0 && !section.regions.is_empty() {
-            let what = "a section with regions at finite strain needs a bladder length equal to the beam's width";
+        let bars = outside_layers(section);
+        if side > 0.0 && bars.is_none() {
+            let what = "a section with regions other than layers at finite strain needs a bladder length equal to the beam's width";
             let place = "/bladders/length_m".to_owned();
             return Err(Error::Section(vec![crate::error::Fault {
                 place,
                 what: what.to_owned(),
             }]));
+        }
+        if side > 0.0 {
+            let layers = cell.materials.iter_mut().skip(1);
+            layers.for_each(|layer| layer.young_modulus_pa *= 1.0 + side);
         }
         let [pitch, height] = cell.size;
         let solid: Vec<_> = solids(&cell, Kind::Hollow).collect();
@@ -139,6 +150,7 @@ impl FiniteCell {
             independent,
             face,
             side,
+            bars: bars.unwrap_or_default(),
             nodes,
             areas: [0.0; 2],
             pattern: OnceLock::new(),
@@ -155,4 +167,24 @@ impl FiniteCell {
             q: [0.0; 4],
         }
     }
+}
+
+/// Heights outside of layers, from the bottom to the top; None if a region is no layer.
+fn outside_layers(section: &Section) -> Option<Vec<[f64; 2]>> {
+    let layer = |region: &Region| match region.shape {
+        RegionShape::Layer { high_m } => Some(high_m),
+        _ => None,
+    };
+    let mut layers: Vec<[f64; 2]> = section.regions.iter().map(layer).collect::<Option<_>>()?;
+    layers.sort_by(|a, b| a[0].total_cmp(&b[0]));
+    let half = section.height_m / 2.0;
+    let ends = layers.iter().map(|layer| layer[0]).chain([half]);
+    let starts = std::iter::once(-half).chain(layers.iter().map(|layer| layer[1]));
+    Some(
+        starts
+            .zip(ends)
+            .map(|(low, high)| [low, high])
+            .filter(|[low, high]| low < high)
+            .collect(),
+    )
 }
