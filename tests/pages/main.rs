@@ -78,6 +78,7 @@ fn shortened(line: &str) -> Option<String> {
         "scripts/test",
         "scripts/bench",
         "scripts/figures",
+        "scripts/blind",
         "scripts/install",
         "scripts/package",
         "sudo apt-get",

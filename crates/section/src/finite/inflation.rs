@@ -11,6 +11,7 @@
 
 use super::energy::is_stable;
 use super::{Drive, FiniteCell, SectionState, State};
+use crate::coefficients::Options;
 use crate::error::Error;
 use crate::input::Section;
 use crate::mesh::Fineness;
@@ -133,7 +134,9 @@ impl Path<'_> {
 impl Section {
     /// Growths at rising pressures of the upper row [Pa]; None if its material has no law.
     pub fn inflate(&self, pressures: &[f64]) -> Result<Option<Inflation>, Error> {
-        let Some((softer, cell)) = self.nearly_incompressible(COARSE)? else {
+        // a coarse mesh may have a folded element beside an arc
+        let coarse = self.nearly_incompressible(COARSE);
+        let Some((softer, cell)) = coarse.or_else(|_| self.nearly_incompressible(Options::default().fineness))? else {
             return Ok(None);
         };
         let modulus = softer.material.young_modulus_pa;

@@ -1,0 +1,1 @@
+"""Blind predictions of published experiments: one module per experiment, each with rows() -> [Row]."""
