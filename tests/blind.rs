@@ -5,7 +5,7 @@
 
 use std::fs;
 use std::path::{Path, PathBuf};
-use std::process::Command;
+use std::process::{Command, Output};
 
 use serde_json::Value;
 use slcbeam::case;
@@ -24,8 +24,19 @@ struct Prediction {
 }
 
 fn predictions() -> Vec<Prediction> {
-    let mut reader = csv::ReaderBuilder::new().comment(Some(b'#')).from_reader(TABLE.as_bytes());
-    let names = ["experiment", "specimen", "quantity", "unit", "pressure_kpa", "low", "median", "high"];
+    let mut reader = csv::ReaderBuilder::new()
+        .comment(Some(b'#'))
+        .from_reader(TABLE.as_bytes());
+    let names = [
+        "experiment",
+        "specimen",
+        "quantity",
+        "unit",
+        "pressure_kpa",
+        "low",
+        "median",
+        "high",
+    ];
     assert_eq!(reader.headers().unwrap().iter().collect::<Vec<_>>(), names);
     let read = |row: csv::StringRecord| Prediction {
         specimen: row[1].to_owned(),
@@ -44,7 +55,9 @@ fn interval(specimen: &str, quantity: &str, kpa: f64) -> [f64; 3] {
 
 fn cases() -> Vec<PathBuf> {
     let all = fs::read_dir("cases/blind").unwrap().map(|entry| entry.unwrap().path());
-    let mut found: Vec<_> = all.filter(|path| path.extension().is_some_and(|e| e == "json")).collect();
+    let mut found: Vec<_> = all
+        .filter(|path| path.extension().is_some_and(|e| e == "json"))
+        .collect();
     found.sort();
     assert_eq!(found.len(), 6);
     found
@@ -55,14 +68,16 @@ fn read(path: &Path, sets: &[&str]) -> case::Case {
     case::load(path, &sets).unwrap_or_else(|error| panic!("{}: {error}", path.display()))
 }
 
-/// Output of `slcbeam coefficients --json` of a blind case.
-fn coefficients(name: &str, more: &[&str]) -> Value {
+/// `slcbeam coefficients` of a blind case.
+fn run(name: &str, more: &[&str]) -> Output {
     let path = format!("cases/blind/{name}.json");
-    let done = Command::new(assert_cmd::cargo::cargo_bin!("slcbeam"))
-        .args(["coefficients", &path, "--json"])
-        .args(more)
-        .output()
-        .unwrap();
+    let mut program = Command::new(assert_cmd::cargo::cargo_bin!("slcbeam"));
+    program.args(["coefficients", &path]).args(more).output().unwrap()
+}
+
+/// Its JSON.
+fn coefficients(name: &str, more: &[&str]) -> Value {
+    let done = run(name, &[&["--json"], more].concat());
     assert!(done.status.success(), "{}", String::from_utf8_lossy(&done.stderr));
     serde_json::from_slice(&done.stdout).unwrap()
 }
@@ -77,7 +92,10 @@ fn every_blind_case_is_listed_and_has_an_equilibrium() {
         assert_eq!(own.name, stem);
         assert!(own.about.contains("not looked at"), "{stem}");
         assert!(listed.contains(&format!("`blind/{stem}`")), "{stem}");
-        let found = equilibrium::follow(&own, &EquilibriumOptions::at(own.time.end_s), &mut |_| Control::Continue).unwrap();
+        let found = equilibrium::follow(&own, &EquilibriumOptions::at(own.time.end_s), &mut |_| {
+            Control::Continue
+        })
+        .unwrap();
         assert!(found.fault.is_none(), "{stem}: {:?}", found.fault);
     }
 }
@@ -124,7 +142,10 @@ fn the_committed_rows_are_recomputed() {
     let (good, said) = run(&["cylindrical", "lines"]);
     assert!(good && said.contains("rows agree"), "{said}");
     let (good, said) = run(&["ribed"]);
-    assert!(!good && said.contains("no prediction ribed") && said.contains("ribbed"), "{said}");
+    assert!(
+        !good && said.contains("no prediction ribed") && said.contains("ribbed"),
+        "{said}"
+    );
 }
 
 /// Goal: the actuators in the middle of their inputs are within their intervals, computed by the program and not by the script.
@@ -183,4 +204,33 @@ assert abs(twice[1] / small[1] - (twice[0] / small[0]) ** 2) < 0.01, (small, twi
 ";
     let done = Command::new("/usr/bin/python3").args(["-c", text]).output().unwrap();
     assert!(done.status.success(), "{}", String::from_utf8_lossy(&done.stderr));
+}
+
+/// Goal: `--inflate` rejects pressures and sections that it cannot follow, with the remedy; it prints a table with the limit pressure.
+#[test]
+fn inflation_needs_a_law_and_rising_pressures() {
+    let plane = "/section/three_d=false";
+    let told = |more: &[&str]| {
+        let done = run("ribbed", &[&["--set", plane], more].concat());
+        let text = String::from_utf8_lossy(&done.stdout).into_owned() + &String::from_utf8_lossy(&done.stderr);
+        (done.status.code(), text)
+    };
+    let (code, text) = told(&["--inflate", "1000"]);
+    assert!(code == Some(3) && text.contains("needs a law"), "{text}");
+    assert!(
+        text.contains("/section/material/law") && text.contains("neo_hookean"),
+        "{text}"
+    );
+    let (code, text) = told(&["--inflate", "2000,1000"]);
+    assert!(code == Some(2) && text.contains("rising order"), "{text}");
+    for bad in ["0", "-5", "much"] {
+        let (code, text) = told(&[&format!("--inflate={bad}")]);
+        assert!(code == Some(2) && text.contains(bad), "{text}");
+    }
+    let law = ["--set", r#"/section/material/law="neo_hookean""#];
+    let (code, text) = told(&[&law[..], &["--inflate", "1000,80000"]].concat());
+    assert!(
+        code == Some(0) && text.contains("blocked moment") && text.contains("Chambers balloon"),
+        "{text}"
+    );
 }

@@ -51,8 +51,9 @@ def rows():
         forces = {kpa: [] for kpa in PRESSURES}
         ratios = {decade: [] for decade in DECADES}
         lost = 0
-        for number, share in enumerate(halton(EACH, 5)):
-            growth = lambda q: between(growths[number % 2], q)
+        for number, share in enumerate(halton(EACH, 6)):
+            slow = draw("all", "growth_share", share[5])
+            growth = lambda q: between(growths[number % 2], slow * q)
             modulus = draw("all", "young_modulus", share[0])
             if growth(1e3 * PRESSURES[-1] / modulus) is None:
                 lost += 1

@@ -10,8 +10,8 @@ EXPERIMENT = "Marchese et al. 2015"
 PUBLISHED = {"cylindrical": (55, 50), "ribbed": (32, 36), "pleated": (62, 88)}
 # Yeoh's second and third constant over the first: EPFL's tension fit as printed, Marechal's without the third, which holds to a stretch of 3
 LAWS = ((-0.010765, 0.0015213), (0.017993, 0.0))
-# geometries by finite elements, geometries of the tube, and samples of the other numbers for each geometry
-CELLS, TUBES, EACH = 12, 128, 64
+# geometries of ribs and pleats by finite elements, of the tube, and samples of the other numbers for each geometry
+CELLS, PLEATS, TUBES, EACH = 12, 16, 128, 64
 # pressures over Young's modulus at which a cell is solved, and that modulus [Pa]
 STEPS, REFERENCE = [0.05 * k for k in range(1, 16)], 1e5
 
@@ -23,7 +23,7 @@ def pressures(specimen, blocked):
 
 
 def others():
-    """Numbers beside those of the geometry, in equal shares: (E, bow, arm, discrepancy, start, line) as shares."""
+    """Numbers beside those of the geometry, as shares: E, bow, arm, discrepancy, start, line, growth."""
     return halton(EACH, 7, skip=100)
 
 
@@ -43,6 +43,24 @@ def tip_force(specimen, moment, share, active):
     return moment * active * draw("all", "bow_factor", share[1]) / arm
 
 
+def growths(inflation, pressure):
+    """Growths over the linear law by the pressure over a given one, from 1 at rest."""
+    keys = {"curvature": "curvature_growth", "volume": "volume_growth", "moment": "blocked_moment_growth"}
+    at = lambda key: [(s["pressure_pa"] / pressure, s[key]) for s in inflation["states"] if s[key] is not None]
+    return {name: [(0.0, 1.0), *at(key)] for name, key in keys.items()}
+
+
+def shapes():
+    """Growths by the share of the limit pressure, of the ribbed cell as shipped."""
+    law = {"yeoh": {"second": LAWS[0][0], "third": LAWS[0][1]}}
+    values = {"/section/material/young_modulus_pa": REFERENCE, "/section/material/law": law}
+    found = section("ribbed", values, [REFERENCE * step for step in STEPS])["inflation"]
+    free, held = (found[key] or REFERENCE * STEPS[-1] for key in ("limit_pressure_pa", "blocked_limit_pressure_pa"))
+    result = growths(found, free) | {"moment": growths(found, held)["moment"]}
+    # the last state before the limit stands for the limit
+    return {name: [*points, (1.01, points[-1][1])] for name, points in result.items()}
+
+
 def cylindrical():
     """Samples by (quantity, pressure), from closed forms."""
     fixed = lambda name: draw("cylindrical", name)
@@ -59,7 +77,7 @@ def cylindrical():
         free, held = tube.path(False), tube.path(True)
         active = min(1.0, length / fixed("length"))
 
-        def respond(pressure, modulus, blocked):
+        def respond(pressure, modulus, blocked, slow):
             at = reached(held if blocked else free, pressure / (modulus / 3))
             if at is None:
                 return None
@@ -80,27 +98,27 @@ def ribbed():
             "/section/material/law": {"yeoh": {"second": LAWS[number % 2][0], "third": LAWS[number % 2][1]}},
         }
         found = section("ribbed", values, [REFERENCE * step for step in STEPS])
-        states = found["inflation"]["states"]
         film = draw("ribbed", "film_modulus") * 0.032 * (draw("ribbed", "film_thickness", share[2]) ** 3 - 1e-12) / 12
-        curve = lambda name: [(0.0, 0.0)] + [(s["pressure_pa"] / REFERENCE, s[name]) for s in states if s[name] is not None]
-        bent, held, grown = curve("curvature_1_m"), curve("blocked_moment_n_m"), curve("volume_per_length_m2")
+        grow, c = growths(found["inflation"], REFERENCE), found["compliance"]
         own = found["bending_stiffness_n_m2"] / REFERENCE
 
-        def respond(pressure, modulus, blocked):
-            at = between(held if blocked else bent, pressure / modulus)
-            volume = between(grown, pressure / modulus)
-            if at is None or (volume is None and not blocked):
-                return None
+        def respond(pressure, modulus, blocked, slow):
+            q = slow * pressure / modulus
             if blocked:
-                return at * modulus / REFERENCE, 0.0
-            return at * wide * pitch * own * modulus / (own * modulus + film), volume * wide * pitch
+                growth = between(grow["moment"], q)
+                return None if growth is None else (pressure * c[1][2] / c[1][1] * growth, 0.0)
+            bent, swollen = between(grow["curvature"], q), between(grow["volume"], q)
+            if bent is None or swollen is None:
+                return None
+            softer = pressure * REFERENCE / modulus * wide * pitch
+            return softer * c[1][2] * bent * own * modulus / (own * modulus + film), softer * c[2][2] * swollen
         yield respond, draw("ribbed", "cavity"), wide * pitch / length
 
 
 def pleated(shape):
     """As `ribbed`, from the linear cell in three dimensions. `shape` is the growth of curvature and volume over the share of the limit."""
     length, count = draw("pleated", "length"), draw("pleated", "channels")
-    for share in halton(CELLS, 7):
+    for share in halton(PLEATS, 8):
         place = lambda name, k: draw("pleated", name, share[k])
         pitch, gap, width = place("pitch", 0), place("gap", 2), place("pleat_width", 3)
         center = 0.0127 - place("roof", 1) - 0.00615
@@ -108,7 +126,7 @@ def pleated(shape):
         ratio = place("constraint_ratio", 5) * 0.0444 / width
         space = lambda low, high: {
             "shape": {"rectangle": {"along_m": [low, high], "high_m": [floor, 0.0127]}},
-            "material": {"young_modulus_pa": REFERENCE / 200, "poisson_ratio": 0.3, "density_kg_m3": 10},
+            "material": {"young_modulus_pa": place("contact_ratio", 7) * REFERENCE, "poisson_ratio": 0.3, "density_kg_m3": 10},
         }
         constraint = {
             "shape": {"layer": {"high_m": [-0.0127, -0.0127 + min(place("constraint_thickness", 4), floor + 0.0122)]}},
@@ -126,30 +144,13 @@ def pleated(shape):
         # both shapes begin at 1
         limit = draw("pleated", "limit_share", share[6])
 
-        def respond(pressure, modulus, blocked):
+        def respond(pressure, modulus, blocked, slow):
             part = pressure / (1e3 * PUBLISHED["pleated"][blocked] * limit)
             if blocked:
                 return pressure * c[1][2] / c[1][1] * between(shape["moment"], part), 0.0
             softer = pressure * REFERENCE / modulus * count * pitch
             return softer * c[1][2] * between(shape["curvature"], part), softer * c[2][2] * between(shape["volume"], part)
         yield respond, draw("pleated", "cavity"), min(1.0, count * pitch / length)
-
-
-def shapes():
-    """Growths over the linear law by the share of the limit pressure, of the ribbed cell as shipped."""
-    law = {"yeoh": {"second": LAWS[0][0], "third": LAWS[0][1]}}
-    values = {"/section/material/young_modulus_pa": REFERENCE, "/section/material/law": law}
-    found = section("ribbed", values, [REFERENCE * step for step in STEPS])["inflation"]
-    result = {}
-    for name, key, limit in (
-        ("curvature", "curvature_growth", "limit_pressure_pa"),
-        ("volume", "volume_growth", "limit_pressure_pa"),
-        ("moment", "blocked_moment_growth", "blocked_limit_pressure_pa"),
-    ):
-        most = found[limit] or REFERENCE * STEPS[-1]
-        points = [(0.0, 1.0)] + [(s["pressure_pa"] / most, s[key]) for s in found["states"] if s[key] is not None]
-        result[name] = points + [(1.01, points[-1][1])]
-    return result
 
 
 MODELS = {"cylindrical": cylindrical, "ribbed": ribbed, "pleated": lambda: pleated(shapes())}
@@ -167,16 +168,17 @@ def rows(specimen):
     for respond, cavity, active in MODELS[specimen]():
         for share in others():
             modulus, off = draw("all", "young_modulus", share[0]), draw(*discrepancy, share[3])
+            slow = draw("all", "growth_share", share[6])
             for blocked in (False, True):
                 counts[blocked][0] += 1
                 # the actuator of the paper, and its cylinder, reached this pressure
                 most = 1e3 * PUBLISHED[specimen][blocked]
-                last = respond(most, modulus, blocked)
+                last = respond(most, modulus, blocked, slow)
                 if last is None or (not blocked and moved_gas(most, last[1] * off, cavity, share[4:6]) is None):
                     counts[blocked][1] += 1
                     continue
                 for kpa in pressures(specimen, blocked):
-                    value, volume = respond(1e3 * kpa, modulus, blocked)
+                    value, volume = respond(1e3 * kpa, modulus, blocked, slow)
                     if blocked:
                         keep("tip force", "N", kpa, tip_force(specimen, value * off, share, active))
                         continue
