@@ -126,6 +126,32 @@ fn the_table_is_complete() {
     }
 }
 
+/// Goal: every row of the page is one of the committed table, to three digits.
+#[test]
+fn the_page_has_the_numbers_of_the_table() {
+    let page = fs::read_to_string("docs/blind.md").unwrap();
+    let rows = predictions();
+    let mut count = 0;
+    for line in page.lines().filter(|line| line.matches('|').count() == 7) {
+        let cells: Vec<&str> = line.split('|').map(str::trim).collect();
+        let Ok(low) = cells[4].parse::<f64>() else { continue };
+        let quantity = cells[2].split(" [").next().unwrap();
+        let kpa = cells[3].parse().ok();
+        let own = rows
+            .iter()
+            .find(|row| row.specimen == cells[1] && row.quantity == quantity && row.kpa == kpa);
+        let own = own.unwrap_or_else(|| panic!("{line}")).interval;
+        for (shown, exact) in [low, cells[5].parse().unwrap(), cells[6].parse().unwrap()]
+            .into_iter()
+            .zip(own)
+        {
+            assert!((shown - exact).abs() <= 6e-3 * exact.abs(), "{line}: {exact}");
+        }
+        count += 1;
+    }
+    assert!(count > 20, "{count}");
+}
+
 /// Goal: the script recomputes its rows without cells (closed forms, runs of networks) within 2 % of their intervals, and rejects unknown names.
 #[test]
 fn the_committed_rows_are_recomputed() {
