@@ -15,7 +15,8 @@ pub fn for_readers(name: &str, own_unit: &str) -> (String, String) {
     }
     let part = PARTS
         .iter()
-        .find_map(|part| Some((part, name.strip_prefix(part)?.strip_prefix(' ')?)));
+        .find_map(|part| Some((part, name.strip_prefix(part)?.strip_prefix(' ')?)))
+        .filter(|(_, output)| *output != "part");
     if let Some((part, output)) = part {
         let unit = if own_unit == "deg" { "°" } else { own_unit };
         return (format!("{part} of {}", spoken(output)), unit.into());
