@@ -373,7 +373,7 @@ const INDEX: &[(&str, &str, &str)] = &[
 
 #[test]
 fn every_equation_has_a_test() {
-    let source: String = files("src", &[])
+    let source: String = files("src", &["rs"])
         .iter()
         .map(|path| fs::read_to_string(path).unwrap())
         .collect();

@@ -92,7 +92,7 @@ fn shortened(line: &str) -> Option<String> {
     {
         return None;
     }
-    let mut line = line;
+    let mut line = line.clone();
     if begins("slcbeam study") {
         // two seconds may be too few for a reference: 4
         line = with(&line, "--budget", "2s") + " || [ $? -eq 4 ]";

@@ -84,7 +84,7 @@ impl TextStyle {
 
 /// A shape of a drawing, in points from the upper left corner.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Shape {
+pub enum DrawnShape {
     /// A line through points.
     Line(Vec<(f64, f64)>, LineStyle),
     /// A filled polygon with its opacity.
@@ -107,14 +107,14 @@ pub struct Drawing {
     /// Width and height [pt].
     pub size: (f64, f64),
     /// Shapes.
-    pub shapes: Vec<Shape>,
+    pub shapes: Vec<DrawnShape>,
     /// Style of the picture.
     pub style: PictureStyle,
 }
 
 /// A drawing area; the origin is the upper left corner. Its unit of length is that of the layout.
 pub struct Canvas {
-    shapes: Vec<Shape>,
+    shapes: Vec<DrawnShape>,
     /// Points per unit of the layout.
     scale: f64,
 }
@@ -160,9 +160,9 @@ impl Canvas {
 
     /// Draws a linked item: `words` are shown under the pointer, and the link leads to the element `id` of a page.
     pub fn thing(&mut self, words: &str, id: &str, draw: impl FnOnce(&mut Self)) {
-        self.shapes.push(Shape::LinkStart(words.into(), id.into()));
+        self.shapes.push(DrawnShape::LinkStart(words.into(), id.into()));
         draw(self);
-        self.shapes.push(Shape::LinkEnd);
+        self.shapes.push(DrawnShape::LinkEnd);
     }
 
     /// A line through points; broken where a coordinate is not finite.
@@ -170,24 +170,26 @@ impl Canvas {
         let stroke = self.scaled(stroke);
         let pieces = points.split(|p| !(p.0.is_finite() && p.1.is_finite()));
         for piece in pieces.filter(|piece| piece.len() > 1) {
-            self.shapes.push(Shape::Line(self.all_placed(piece), stroke));
+            self.shapes.push(DrawnShape::Line(self.all_placed(piece), stroke));
         }
     }
 
     /// A filled rectangle between two corners, the upper left one first.
     pub fn rectangle(&mut self, a: (f64, f64), b: (f64, f64), colour: Colour) {
         self.shapes
-            .push(Shape::Rectangle(self.placed(a), self.placed(b), colour));
+            .push(DrawnShape::Rectangle(self.placed(a), self.placed(b), colour));
     }
 
     /// A filled polygon.
     pub fn polygon(&mut self, points: &[(f64, f64)], colour: Colour) {
-        self.shapes.push(Shape::Polygon(self.all_placed(points), colour, 1.0));
+        self.shapes
+            .push(DrawnShape::Polygon(self.all_placed(points), colour, 1.0));
     }
 
     /// A translucent polygon.
     pub fn shade(&mut self, points: &[(f64, f64)], colour: Colour) {
-        self.shapes.push(Shape::Polygon(self.all_placed(points), colour, 0.22));
+        self.shapes
+            .push(DrawnShape::Polygon(self.all_placed(points), colour, 0.22));
     }
 
     /// The outline of a rectangle.
@@ -197,7 +199,7 @@ impl Canvas {
 
     /// An open ring about a point.
     pub fn ring(&mut self, centre: (f64, f64), radius: f64, stroke: LineStyle) {
-        let ring = Shape::Ring(self.placed(centre), self.scale * radius, self.scaled(stroke));
+        let ring = DrawnShape::Ring(self.placed(centre), self.scale * radius, self.scaled(stroke));
         self.shapes.push(ring);
     }
 
@@ -210,6 +212,6 @@ impl Canvas {
             size: self.scale * words.size,
             ..words
         };
-        self.shapes.push(Shape::Text(self.placed(at), text.into(), words));
+        self.shapes.push(DrawnShape::Text(self.placed(at), text.into(), words));
     }
 }

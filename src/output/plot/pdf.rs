@@ -12,7 +12,7 @@ use pdf_writer::{Content, Finish as _, Name, Pdf, Rect, Ref, Str};
 use subsetter::{GlyphRemapper, subset};
 use ttf_parser::{Face, GlyphId};
 
-use super::canvas::{Drawing, LineStyle, Shape, TextAnchor, TextStyle};
+use super::canvas::{Drawing, DrawnShape, LineStyle, TextAnchor, TextStyle};
 use super::colour::Colour;
 use super::style::{Rise, runs};
 use crate::error::{Error, Result, visible};
@@ -201,12 +201,12 @@ impl Drawing {
         });
         for shape in &self.shapes {
             match shape {
-                Shape::Line(points, stroke) => {
+                DrawnShape::Line(points, stroke) => {
                     out.stroke(*stroke);
                     out.path(points);
                     out.content.stroke();
                 }
-                Shape::Polygon(points, colour, opacity) => {
+                DrawnShape::Polygon(points, colour, opacity) => {
                     let corners = |out: &mut PdfContent| {
                         out.fill(*colour);
                         out.path(points);
@@ -220,14 +220,14 @@ impl Drawing {
                         corners(&mut out);
                     }
                 }
-                Shape::Rectangle(a, b, colour) => {
+                DrawnShape::Rectangle(a, b, colour) => {
                     out.fill(*colour);
                     let ((x, y), [width, height]) = (out.at((a.0, b.1)), [b.0 - a.0, b.1 - a.1].map(|x| x as f32));
                     out.content.rect(x, y, width, height).fill_nonzero();
                 }
-                Shape::Ring(centre, radius, stroke) => out.ring(*centre, *radius, *stroke),
-                Shape::Text(at, text, words) => out.text(*at, text, *words, glyphs),
-                Shape::LinkStart(..) | Shape::LinkEnd => {}
+                DrawnShape::Ring(centre, radius, stroke) => out.ring(*centre, *radius, *stroke),
+                DrawnShape::Text(at, text, words) => out.text(*at, text, *words, glyphs),
+                DrawnShape::LinkStart(..) | DrawnShape::LinkEnd => {}
             }
         }
         out.content.finish().into_vec()

@@ -2,7 +2,7 @@
 
 use std::fmt::{self, Write as _};
 
-use super::canvas::{Drawing, LineStyle, Shape, TextAnchor, TextStyle};
+use super::canvas::{Drawing, DrawnShape, LineStyle, TextAnchor, TextStyle};
 use super::colour::Colour;
 use super::style::Rise;
 use super::style::runs;
@@ -47,10 +47,10 @@ impl SvgText {
         let _ = writeln!(self.text, "{element}");
     }
 
-    fn shape(&mut self, shape: &Shape) {
+    fn shape(&mut self, shape: &DrawnShape) {
         match shape {
-            Shape::Line(points, stroke) => self.line(points, *stroke),
-            Shape::Polygon(points, colour, opacity) => {
+            DrawnShape::Line(points, stroke) => self.line(points, *stroke),
+            DrawnShape::Polygon(points, colour, opacity) => {
                 let mut points = self.fine(points);
                 points.dedup();
                 let opacity = match *opacity < 1.0 {
@@ -62,19 +62,19 @@ impl SvgText {
                     listed(&points)
                 ));
             }
-            Shape::Rectangle(a, b, colour) => self.rectangle(*a, *b, *colour),
-            Shape::Ring((x, y), radius, stroke) => {
+            DrawnShape::Rectangle(a, b, colour) => self.rectangle(*a, *b, *colour),
+            DrawnShape::Ring((x, y), radius, stroke) => {
                 let ([x, y, radius], colour) = ([*x, *y, *radius].map(|x| self.round(x)), stroke.colour);
                 let width = self.width(*stroke);
                 self.put(format_args!(
                     "<circle cx=\"{x}\" cy=\"{y}\" r=\"{radius}\" fill=\"none\" stroke=\"{colour}\" stroke-width=\"{width}\"/>"
                 ));
             }
-            Shape::Text(at, text, words) => self.words(*at, text, *words),
-            Shape::LinkStart(words, id) => {
+            DrawnShape::Text(at, text, words) => self.text(*at, text, *words),
+            DrawnShape::LinkStart(words, id) => {
                 self.put(format_args!("<a href=\"#{id}\"><title>{}</title>", escaped(words)));
             }
-            Shape::LinkEnd => self.put(format_args!("</a>")),
+            DrawnShape::LinkEnd => self.put(format_args!("</a>")),
         }
     }
 
@@ -104,7 +104,7 @@ impl SvgText {
         ));
     }
 
-    fn words(&mut self, at: (f64, f64), text: &str, words: TextStyle) {
+    fn text(&mut self, at: (f64, f64), text: &str, words: TextStyle) {
         let anchor = match words.anchor {
             TextAnchor::Left => "start",
             TextAnchor::Centre => "middle",
