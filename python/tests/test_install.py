@@ -84,7 +84,8 @@ def test_versions_agree():
     manifests = [ROOT / "python/Cargo.toml", *(ROOT / "crates").glob("*/Cargo.toml")]
     assert {re.search(r'^version = "(.*)"', path.read_text(), re.M)[1] for path in manifests} == {version}
     assert f"\nversion: {version}\n" in (ROOT / "CITATION.cff").read_text()
-    assert re.search(rf"^## \[{re.escape(version)}\] - (20\d\d-\d\d-\d\d|Unreleased)$", (ROOT / "CHANGELOG.md").read_text(), re.M)
+    heading = re.search(rf"^## \[{re.escape(version)}\] - (20\d\d-\d\d-\d\d|Unreleased)$", (ROOT / "CHANGELOG.md").read_text(), re.M)
+    assert heading and (heading[1] == "Unreleased" or f"\ndate-released: {heading[1]}\n" in (ROOT / "CITATION.cff").read_text())
     named = set(re.findall(r"slcbeam[-_](\d+\.\d+\.\d+)", (ROOT / "docs/install.md").read_text()))
     assert named == {version}
 

@@ -12,11 +12,15 @@ impl Case {
         if controlled.is_empty() {
             return Cow::Borrowed(self);
         }
+        let mut names = vec![];
+        for (.., signal) in &controlled {
+            signal.each_controller(&mut |one| names.push(one.name.clone()));
+        }
         let mut value = serde_json::to_value(self).unwrap_or_default();
         for (pointer, _, signal) in controlled {
             if let (Some(place), Ok(spanned)) = (
                 value.pointer_mut(&pointer),
-                serde_json::to_value(&*signal.spanned(self.time.end_s)),
+                serde_json::to_value(&*signal.spanned_beside(self.time.end_s, &names)),
             ) {
                 *place = spanned;
             }

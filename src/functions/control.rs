@@ -291,39 +291,65 @@ impl Signal {
     }
 
     /// The signal with a table in place of each controller, which spans the outputs until `end` [s]: for bounds.
-    pub(crate) fn spanned(&self, end: f64) -> Cow<'_, Self> {
+    pub(super) fn spanned(&self, end: f64) -> Cow<'_, Self> {
+        let mut names = vec![];
+        self.each_controller(&mut |one| names.push(one.name.clone()));
+        self.spanned_beside(end, &names)
+    }
+
+    /// The same beside other signals, so that the controllers with these names reach all combinations of their limits.
+    pub(crate) fn spanned_beside(&self, end: f64, names: &[String]) -> Cow<'_, Self> {
+        let each = |parts: &[Self]| {
+            parts
+                .iter()
+                .map(|part| part.spanned_beside(end, names).into_owned())
+                .collect()
+        };
         match self {
-            Self::Controller(one) => Cow::Owned(one.spanned(end)),
-            Self::Sum(parts) if self.is_controlled() => Cow::Owned(Self::Sum(
-                parts.iter().map(|part| part.spanned(end).into_owned()).collect(),
-            )),
-            Self::Product(parts) if self.is_controlled() => Cow::Owned(Self::Product(
-                parts.iter().map(|part| part.spanned(end).into_owned()).collect(),
-            )),
+            Self::Controller(one) => Cow::Owned(one.spanned(end, names)),
+            Self::Sum(parts) if self.is_controlled() => Cow::Owned(Self::Sum(each(parts))),
+            Self::Product(parts) if self.is_controlled() => Cow::Owned(Self::Product(each(parts))),
             _ => Cow::Borrowed(self),
         }
     }
 }
 
-/// Parts of the run after which a table that spans the outputs of a controller changes.
-const CHANGES: [f64; 2] = [0.01, 0.02];
+/// Part of the run after which a table that spans the outputs of a controller may change.
+const CHANGE: f64 = 0.01;
+/// Most controllers whose limits are combined; others reach their limits together with one of these.
+const COMBINED: usize = 6;
 
 impl Controller {
-    /// A table that begins with the first output, has both limits, and remains at the larger of them.
-    fn spanned(&self, end: f64) -> Signal {
+    /// A table that begins with the first output, has both limits in all combinations with those of the other controllers, and remains at
+    /// the larger of them.
+    fn spanned(&self, end: f64, names: &[String]) -> Signal {
         let [low, high] = self.limits();
         let [other, largest] = if high.abs() >= low.abs() {
             [low, high]
         } else {
             [high, low]
         };
+        let mut all: Vec<&String> = vec![];
+        for name in names {
+            if !all.contains(&name) {
+                all.push(name);
+            }
+        }
+        let own = all.iter().position(|name| **name == self.name).unwrap_or(0) % COMBINED;
         let slow = match self.hold {
             Hold::Step => 0.0,
-            Hold::Ramp => self.sample_interval_s.min((CHANGES[1] - CHANGES[0]) * end),
+            Hold::Ramp => self.sample_interval_s.min(CHANGE * end),
         };
-        let [first, second] = CHANGES.map(|part| part * end);
-        let times = vec![0.0, first, first + slow, second + slow, second + 2.0 * slow, 2.0 * end];
-        let values = vec![self.start, self.start, other, other, largest, largest];
+        let (mut times, mut values) = (vec![0.0], vec![self.start]);
+        let combinations = 1_u32 << all.len().clamp(1, COMBINED);
+        for (k, combination) in (0..combinations).rev().enumerate() {
+            let (t, before) = (CHANGE * (k + 1) as f64 * end, values[values.len() - 1]);
+            let value = if combination >> own & 1 == 1 { other } else { largest };
+            times.extend([t, t + slow]);
+            values.extend([before, value]);
+        }
+        times.push(2.0 * end);
+        values.push(largest);
         Signal::Table(super::signals::Table::new(
             times,
             values,

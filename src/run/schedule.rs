@@ -33,6 +33,9 @@ impl ScheduledStop {
 /// Part of a run within which two stops coincide.
 pub const CLOSEST: f64 = 1e-9;
 
+/// Relative difference of equal times by rounding errors.
+const ROUND_OFF: f64 = 1e-15;
+
 /// All stops of a run in order, its end last.
 pub fn stops(case: &Case, model: &Model) -> Vec<ScheduledStop> {
     let end = case.time.end_s;
@@ -58,6 +61,14 @@ pub fn stops(case: &Case, model: &Model) -> Vec<ScheduledStop> {
             checkpoint: true,
             ..ScheduledStop::at(k as f64 * interval)
         }));
+    }
+    // a stop at an output time has its bits, so that the output is the one before the stop
+    let interval = case.time.output_interval();
+    for stop in &mut all {
+        let output = (stop.t / interval).round() * interval;
+        if (stop.t - output).abs() <= ROUND_OFF * output {
+            stop.t = output;
+        }
     }
     all.retain(|s| s.t > closest && s.t < end - closest);
     all.sort_by(|a, b| a.t.total_cmp(&b.t));

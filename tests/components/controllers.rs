@@ -324,6 +324,39 @@ fn mistakes_are_refused() {
     assert!(refused(&[&port(PI, ""), VESSEL, &valve]).contains("0 (closed) to 1 (open)"));
 }
 
+/// Two controllers of one input are tested at all combinations of their limits: -1 times 1 is no opening.
+#[test]
+fn limits_of_controllers_are_combined() {
+    let one = |name: &str| {
+        inner()
+            .replace("inner", name)
+            .replace("1.5", "1")
+            .replace(r#""lowest": 0"#, r#""lowest": -1"#)
+    };
+    let product = format!(
+        r#"/network/tubes/0/opening={{"product": [{}, {}]}}"#,
+        one("c"),
+        one("d")
+    );
+    assert!(refused(&[&port(PI, ""), VESSEL, &product]).contains("0 (closed) to 1 (open)"));
+}
+
+/// Rows at samples have the output before them also where multiples of the two intervals differ by rounding (11 times 0.03, 66 times
+/// 0.005). Goal: the output changes behind such a row only.
+#[test]
+fn rows_at_samples_precede_them() {
+    let quick = port(PI, "").replace("0.25", "0.03");
+    let (memory, _) = run(
+        RIG,
+        &[&quick, VESSEL, r#"/time={"end_s": 1.2, "output_interval_s": 0.005}"#],
+    );
+    let output = memory.column("controller_regulator_output").unwrap();
+    for k in (6..output.len() - 1).step_by(6) {
+        assert_eq!(output[k], output[k - 1], "row {k}");
+    }
+    assert!((6..output.len() - 1).step_by(6).any(|k| output[k + 1] != output[k]));
+}
+
 fn inner() -> &'static str {
     r#"{"controller": {"name": "inner", "measures": "tip_u1", "setpoint": 0, "sample_interval_s": 0.1,
         "law": {"pi": {"gain": 1, "lowest": 0, "highest": 1.5}}}}"#

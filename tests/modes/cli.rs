@@ -329,6 +329,17 @@ fn responses_have_files_and_a_model() {
             entry(&a, start + 8 * (row * states + column))
         );
     }
+    // a model of small motions holds the outputs of controllers, and says so
+    let held = dir.path().join("held.json");
+    let of_controlled = ["--input", "/attachments/0/force_x_n", "--output", "tip_u1"];
+    let controlled = [
+        "export",
+        "cases/regulated-actuator.json",
+        "--no-self-test",
+        "--state-space",
+    ];
+    let (code, said, _) = run(&[&controlled[..], &[held.to_str().unwrap()], &of_controlled].concat());
+    assert!(code == 0 && said.contains("W044"), "{code} {said}");
     // at zero flow an opening has no effect, and rounding errors give no peaks
     let nothing = dir.path().join("nothing");
     let (code, said, _) = run(&[

@@ -143,6 +143,11 @@ impl Instance {
 
     /// Creates the model, which begins at time `start`.
     pub fn begin(&mut self, start: f64, stop: Option<f64>) -> Result<(), String> {
+        if !start.is_finite() || stop.is_some_and(|stop| !(stop > start && stop.is_finite())) {
+            return Err(format!(
+                "start time {start} s, stop time {stop:?} s: both must be finite, and the stop time the later one"
+            ));
+        }
         (self.start, self.stop) = (start, stop);
         self.model = Some(self.create().map_err(|error| text(&error))?);
         self.phase = Phase::Initialization;
@@ -188,8 +193,18 @@ impl Instance {
         self.phase = Phase::Instantiated;
     }
 
-    /// Sets an input.
-    pub fn set(&mut self, reference: u32, value: f64) -> Result<(), String> {
+    /// Sets inputs: all, or none in case of an error.
+    pub fn set_all(&mut self, references: &[u32], values: &[f64]) -> Result<(), String> {
+        let before = self.values.clone();
+        let mut pairs = references.iter().zip(values);
+        let done = pairs.try_for_each(|(reference, value)| self.set(*reference, *value));
+        if done.is_err() {
+            self.values = before;
+        }
+        done
+    }
+
+    fn set(&mut self, reference: u32, value: f64) -> Result<(), String> {
         let place = (reference as usize).wrapping_sub(1);
         let (Some(input), Some(own)) = (self.setup.inputs.get(place), self.values.get_mut(place)) else {
             return Err(format!("value reference {reference} is no input"));
@@ -251,11 +266,20 @@ impl Instance {
                 outcome.time
             ));
         }
+        if let Some(stop) = self.stop.filter(|stop| from + size > stop + rounding) {
+            return Err(format!(
+                "the step ends at {} s, after the stop time {stop} s",
+                from + size
+            ));
+        }
         let mut until = from + size - self.start;
         match model {
             Model::Linear(model) => {
                 if until > now {
                     model.step(until, self.values[0]);
+                    if model.outputs().any(|value| !value.is_finite()) {
+                        return Err(format!("an output is not finite after a step of {size} s"));
+                    }
                 }
             }
             Model::Beam(simulator, _) => {

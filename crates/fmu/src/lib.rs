@@ -364,9 +364,9 @@ pub unsafe extern "C" fn fmi3SetFloat64(
     // SAFETY: an instance, references, and as many values, by the contract of FMI.
     unsafe {
         guarded(instance, "fmi3SetFloat64", |handle| {
-            for (reference, value) in slice(references, count).iter().zip(slice(values, count)) {
-                handle.instance.set(*reference, *value)?;
-            }
+            handle
+                .instance
+                .set_all(slice(references, count), slice(values, count))?;
             Ok(Status::Ok)
         })
     }

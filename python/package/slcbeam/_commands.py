@@ -26,6 +26,8 @@ Data = Union[str, "os.PathLike[str]", Mapping[str, Any], Any]
 
 
 def _text(value: Any) -> str:
+    if isinstance(value, os.PathLike):
+        return str(os.fspath(value))
     return value if isinstance(value, str) else as_json(value, "value of an option")
 
 

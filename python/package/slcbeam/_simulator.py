@@ -19,7 +19,7 @@ Values = Union[None, float, Sequence[float], np.ndarray, Mapping[str, float]]
 
 class Simulator:
     """Simulates a case step by step. Inputs (loads, pressures, flows, openings) are constant during a step. Volumes and motions of ends
-    reach their value at the end of the step, by a cubic with continuous rate.
+    reach their value at the end of the step, by a cubic.
 
     :param case: a :class:`Case`, or an argument of :func:`load`. ``/time/end_s`` limits the simulated time.
     :param inputs: smallest and largest value of each input, by the JSON pointer of its signal in the unit of its key. They determine the

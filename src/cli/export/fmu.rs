@@ -202,6 +202,15 @@ fn linear<'a>(asked: &ExportArguments, case: &'a Case, given: &[InputArgument]) 
         ));
     }
     let found = TestedModel::new(asked, case, &input.pointer)?;
+    if let Some([low, high]) = input
+        .range
+        .filter(|[low, high]| !(low..=high).contains(&&found.model.u0))
+    {
+        return Err(Error::Usage(format!(
+            "--input {}={low},{high}: the range must contain the value of the case at the operating point, {}",
+            found.input, found.model.u0
+        )));
+    }
     let contents = FmuContents {
         case,
         inputs: vec![FmuInput {

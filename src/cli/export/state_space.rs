@@ -14,6 +14,7 @@ use crate::error::{Code, Error, Result};
 use crate::output::columns::warnings;
 use crate::output::numbers::{counted, significant};
 use crate::output::state_space as files;
+use crate::run::control_loop;
 use crate::run::record::HistoryColumn;
 use crate::run::response::LinearResponse;
 use crate::run::response::self_test::SelfTest;
@@ -80,6 +81,7 @@ impl TestedModel {
             Ok(growing) => cautions(growing, response.about.moving()),
             Err(why) => vec![Code::ErrorEstimate.warning(format!("not known: poles: {why}"))],
         };
+        warnings.extend(control_loop::held(response.about.system()));
         if let Some(Ok(test)) = tested
             .as_ref()
             .filter(|tested| tested.as_ref().is_ok_and(|test| !test.passed()))

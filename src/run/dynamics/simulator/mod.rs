@@ -186,8 +186,8 @@ impl Simulator {
         all
     }
 
-    /// Sets the inputs and simulates until time `until` [s]. An input that must not jump reaches its value at that time, by a cubic with
-    /// continuous rate. `ask` decides after every step if the simulation continues; if not, it remains at that time.
+    /// Sets the inputs and simulates until time `until` [s]. An input that must not jump reaches its value at that time, by a
+    /// cubic. `ask` decides after every step if the simulation continues; if not, it remains at that time.
     ///
     /// # Errors
     /// [`Error::Usage`] for an invalid time or invalid values; [`Error::Solver`] if the simulation fails. It then remains at its last
