@@ -14,8 +14,8 @@ use crate::output::folder::{name_of, replace_picture};
 use crate::output::plot::pdf::PdfFont;
 use crate::output::plot::style::PictureStyle;
 use crate::output::quantity_plot::names::for_readers;
-use crate::output::quantity_plot::table::ResultTable;
-use crate::output::quantity_plot::{self, PictureRequest, QuantityPanel};
+use crate::output::quantity_plot::table::{ResultTable, TableColumn, shell_word};
+use crate::output::quantity_plot::{self, PictureRequest, QuantityPanel, profile};
 
 /// Width of one and of two columns of a journal [mm].
 const COLUMNS_MM: [f64; 2] = [85.0, 174.0];
@@ -82,6 +82,9 @@ pub struct PlotArguments {
     #[arg(long)]
     pub json: bool,
 }
+
+/// Number of characters beyond which a file name lists no further quantities.
+const LONGEST_NAME: usize = 80;
 
 /// Styles of pictures.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
@@ -174,7 +177,12 @@ fn format_of(path: &Path) -> Result<Format> {
 fn default_path(asked: &PlotArguments) -> PathBuf {
     let whole = asked.results.first().and_then(|dir| fs::canonicalize(dir).ok());
     let mut name = whole.as_deref().map_or_else(String::new, name_of);
+    let mut drawn = 0;
     for quantity in &asked.quantities {
+        if name.chars().count() + quantity.chars().count() > LONGEST_NAME {
+            break;
+        }
+        drawn += 1;
         name += "-";
         name.extend(quantity.chars().map(|c| {
             if c.is_alphanumeric() || "_-.".contains(c) {
@@ -183,6 +191,10 @@ fn default_path(asked: &PlotArguments) -> PathBuf {
                 '-'
             }
         }));
+    }
+    match asked.quantities.len() - drawn {
+        0 => {}
+        more => name += &format!("-and-{more}-more"),
     }
     PathBuf::from(format!("{name}.svg"))
 }
@@ -215,10 +227,7 @@ fn answer(asked: &PlotArguments, path: &Path, bytes: usize, panels: &[QuantityPa
         drawn.join("; ")
     );
     if asked.quantities.is_empty() && asked.at.is_empty() {
-        let dir = asked
-            .results
-            .first()
-            .map_or_else(String::new, |dir| dir.display().to_string());
+        let dir = asked.results.first().map_or_else(String::new, |dir| shell_word(dir));
         text += &format!("other quantities: slcbeam plot {dir} --list\n");
     }
     super::print(&text)
@@ -229,14 +238,17 @@ fn list(asked: &PlotArguments) -> Result<ExitCode> {
     let Some(dir) = asked.results.first() else {
         return Err(Error::Usage("expected a result folder".into()));
     };
-    let table = ResultTable::open(dir)?;
-    let rows: Vec<[String; 3]> = table
-        .numbers()
-        .map(|column| {
-            let (words, unit) = for_readers(&column.name, &column.unit);
-            [column.name.clone(), unit, words]
-        })
-        .collect();
+    let rows: Vec<[String; 3]> = match asked.at.is_empty() {
+        false => profile::names(dir)?,
+        true => {
+            let table = ResultTable::open(dir)?;
+            let row = |column: &TableColumn| {
+                let (words, unit) = for_readers(&column.name, &column.unit);
+                [column.name.clone(), unit, words]
+            };
+            table.numbers().map(row).collect()
+        }
+    };
     super::print(&match asked.json {
         true => {
             let all = rows

@@ -93,7 +93,12 @@ impl PlacedPanel<'_> {
         match kind {
             SeriesKind::Line(points, stroke) => canvas.line(&placed(points), *stroke),
             SeriesKind::Area(points, colour) => canvas.polygon(&placed(points), *colour),
-            SeriesKind::Shade(points, colour) => canvas.shade(&placed(points), *colour),
+            SeriesKind::Shade(points, colour) => {
+                // the lower limit of an error can be zero, which no logarithmic axis contains
+                let within = |(x, y): (f64, f64)| (x, y.clamp(self.top, self.bottom()));
+                let inside: Vec<_> = placed(points).into_iter().map(within).collect();
+                canvas.shade(&inside, *colour);
+            }
             SeriesKind::Marks(points, glyph, colour) => {
                 let within = |p: &(f64, f64)| p.0.is_finite() && p.1.is_finite();
                 let all = placed(points).into_iter().filter(within);

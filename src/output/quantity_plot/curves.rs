@@ -1,7 +1,7 @@
 //! Columns of a table as curves with their error bands.
 
 use super::names::for_readers;
-use super::table::ResultTable;
+use super::table::{ResultTable, SWEEP};
 use super::{NamedCurve, QuantityPanel};
 use crate::error::{Error, Result};
 use crate::output::envelope::{Envelope, HistorySource, RowOrigin, each_row};
@@ -101,11 +101,7 @@ impl ResultTable<'_> {
                     true => NamedCurve {
                         label: name,
                         points: thinned(points),
-                        band: band
-                            .iter()
-                            .step_by(band.len().div_ceil(STRETCHES).max(1))
-                            .copied()
-                            .collect(),
+                        band: thinned_band(&band),
                     },
                     false => NamedCurve {
                         label: name,
@@ -120,6 +116,7 @@ impl ResultTable<'_> {
                 curves: curves.collect(),
                 marks: self.known.marks,
                 logarithmic: match over {
+                    None if self.known.file == SWEEP => [is_geometric(read.column(x)), false],
                     None => self.axes(&of.name),
                     Some(_) => [false; 2],
                 },
@@ -197,6 +194,23 @@ impl ResultTable<'_> {
     }
 }
 
+/// True if at least three different values have a constant ratio.
+fn is_geometric(values: &[f64]) -> bool {
+    let mut all: Vec<f64> = values.iter().copied().filter(|x| x.is_finite()).collect();
+    all.sort_by(f64::total_cmp);
+    all.dedup();
+    let (Some(first), [low, next, _, ..]) = (all.first(), all.as_slice()) else {
+        return false;
+    };
+    let ratio = next / low;
+    // a constant ratio near one is a constant difference too
+    *first > 0.0
+        && ratio > 1.01
+        && all
+            .windows(2)
+            .all(|pair| (pair[1] / pair[0] / ratio - 1.0).abs() < 1e-6)
+}
+
 /// Band around points: abscissa, lower and upper limit.
 fn around(points: &[(f64, f64)], source: &BandSource, column: impl Fn(usize) -> Vec<f64>) -> Vec<(f64, f64, f64)> {
     match source {
@@ -213,10 +227,23 @@ fn around(points: &[(f64, f64)], source: &BandSource, column: impl Fn(usize) -> 
                 .collect()
         }
         BandSource::Widths(widths) => {
-            let width = |p: &(f64, f64)| width_at(widths, p.0).map(|width| (p.0, p.1 - width, p.1 + width));
-            points.iter().filter_map(width).collect()
+            let width = |p: &(f64, f64)| {
+                let width = width_at(widths, p.0).unwrap_or(f64::NAN);
+                (p.0, p.1 - width, p.1 + width)
+            };
+            points.iter().map(width).collect()
         }
     }
+}
+
+/// The first limits of each stretch of a band; a stretch with missing ones is missing.
+fn thinned_band(band: &[(f64, f64, f64)]) -> Vec<(f64, f64, f64)> {
+    let stretches = band.chunks(band.len().div_ceil(STRETCHES).max(1));
+    let of = |stretch: &[(f64, f64, f64)]| {
+        let missing = stretch.iter().find(|p| !(p.1.is_finite() && p.2.is_finite()));
+        missing.or(stretch.first()).copied()
+    };
+    stretches.filter_map(of).collect()
 }
 
 /// Extremes of stretches of a curve in time; all points of a short one.
@@ -227,4 +254,33 @@ fn thinned(points: Vec<(f64, f64)>) -> Vec<(f64, f64)> {
         envelope.add(&names, RowOrigin::History, &[x, y]);
     }
     envelope.points(1)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn constant_ratios_are_geometric() {
+        assert!(is_geometric(&[1.0, 10.0, 1.0, 100.0]) && is_geometric(&[1e-10, 3.16227766e-10, 1e-9]));
+        for values in [
+            &[1.0, 2.0, 3.0][..],
+            &[1.0, 10.0],
+            &[0.0, 1.0, 10.0],
+            &[-4.0, -2.0, -1.0],
+            &[1.0, 1.0, 1.0],
+        ] {
+            assert!(!is_geometric(values), "{values:?}");
+        }
+    }
+
+    /// Goal: a stretch with a missing limit leaves a gap.
+    #[test]
+    fn thinned_bands_keep_gaps() {
+        let mut band: Vec<_> = (0..10 * STRETCHES).map(|k| (k as f64, 0.0, 1.0)).collect();
+        band[57].1 = f64::NAN;
+        let thinned = thinned_band(&band);
+        assert_eq!(thinned.len(), STRETCHES);
+        assert_eq!(thinned.iter().filter(|p| p.1.is_nan()).count(), 1);
+    }
 }

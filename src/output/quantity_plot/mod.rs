@@ -4,19 +4,21 @@
 //! table    columns of the table of a result, its usual abscissa and quantities
 //! curves   columns as curves with their error bands
 //! profile  curves along the beam at instants
+//! series   curves as lines, symbols and bands of a panel
 //! names    names of columns for readers
 //! ```
 
 mod curves;
 pub mod names;
 pub mod profile;
+mod series;
 pub mod table;
 
 use std::path::{Path, PathBuf};
 
 use super::folder::name_of;
 use super::plot::canvas::Drawing;
-use super::plot::picture::{Glyph, Panel, Picture, PictureAxis, PictureSeries};
+use super::plot::picture::{Panel, Picture, PictureAxis};
 use super::plot::style::{POINTS_PER_MM, PictureStyle};
 use super::plot::{extent, width_of};
 use crate::error::{Error, Result};
@@ -27,8 +29,8 @@ const SINGLE: f64 = 0.68;
 const SEVERAL: f64 = 0.42;
 /// Smallest width and height of a frame, in units of the layout.
 const LEAST: f64 = 40.0;
-/// Part of the range of the largest curve below which an error band is narrower than its line.
-const HIDDEN: f64 = 3e-3;
+/// Largest height of a page [mm].
+const MOST_MM: f64 = 1000.0;
 
 /// A curve and its name in the legend.
 #[derive(Clone, Debug, PartialEq)]
@@ -130,7 +132,7 @@ pub fn panels(results: &[PathBuf], asked: &PictureRequest) -> Result<Vec<Quantit
                     )));
                 }
                 let quantities = match asked.quantities.as_slice() {
-                    [] => table.usual(),
+                    [] => table.usual()?,
                     names => names.iter().map(|name| table.find(name)).collect::<Result<_>>()?,
                 };
                 let own = table.panels(&quantities, asked.over.as_deref(), label, asked.within)?;
@@ -173,6 +175,17 @@ pub fn panels(results: &[PathBuf], asked: &PictureRequest) -> Result<Vec<Quantit
 
 /// Names of results in the legend: given ones, or the names of the folders; empty for a single result.
 fn labels(results: &[PathBuf], given: &[String]) -> Result<Vec<String>> {
+    for (k, label) in given.iter().enumerate() {
+        let why = match label {
+            label if label.trim().is_empty() => "is empty",
+            label if label.chars().any(char::is_control) => "has a line break or another control character",
+            label if given[..k].contains(label) => "is the name of two results",
+            _ => continue,
+        };
+        return Err(Error::Usage(format!(
+            "--label {label:?}: {why}; each result needs a name of its own in one line"
+        )));
+    }
     if !given.is_empty() && given.len() != results.len() {
         return Err(Error::Usage(format!(
             "--label: {} for {} results; give one to each, in their order",
@@ -255,6 +268,13 @@ pub fn drawing(
         };
         sheet.1 = besides + size.1 * all.len() as f64;
     }
+    let height = sheet.1 * style.scale / POINTS_PER_MM;
+    if height > MOST_MM {
+        return Err(Error::Usage(format!(
+            "--quantity: {} panels need a height of {height:.0} mm, {MOST_MM} mm at most; draw fewer, or those of one unit with --together",
+            all.len()
+        )));
+    }
     if size.0 < LEAST || size.1 < LEAST {
         let (side, missing) = match size.0 < LEAST {
             true => ("width", width_mm + (LEAST - size.0) * style.scale / POINTS_PER_MM),
@@ -311,7 +331,7 @@ fn picture(all: &[QuantityPanel], style: &PictureStyle, (width, height): (f64, f
         } else if let Some((lo, hi)) = extent(points().map(|p| p.0)).filter(|(lo, hi)| !one.marks && hi > lo) {
             x = x.between(lo, hi);
         }
-        Panel::new((width, height), x, y, series(one, style))
+        Panel::new((width, height), x, y, series::series(one, style))
     });
     Picture::stacked(String::new(), String::new(), panels)
 }
@@ -332,45 +352,4 @@ fn equally(
         axis.between(0.5 * (lo + hi) - half, 0.5 * (lo + hi) + half)
     };
     (about(x, along, width), about(y, up, height))
-}
-
-/// Bands, then curves or points.
-fn series(one: &QuantityPanel, style: &PictureStyle) -> Vec<PictureSeries> {
-    let (low, high) = extent(one.curves.iter().flat_map(|curve| curve.points.iter().map(|p| p.1))).unwrap_or_default();
-    let seen = |curve: &&NamedCurve| curve.band.iter().any(|(_, a, b)| b - a > 2.0 * HIDDEN * (high - low));
-    let line = |k: usize| style.curve(k);
-    let mut all: Vec<PictureSeries> = vec![];
-    for (k, curve) in one.curves.iter().enumerate().filter(|(_, curve)| seen(curve)) {
-        let positive = |p: &&(f64, f64, f64)| p.1.is_finite() && p.2.is_finite() && (!one.logarithmic[1] || p.1 > 0.0);
-        let band: Vec<_> = curve.band.iter().filter(positive).copied().collect();
-        all.push(PictureSeries::shade(&band, line(k).colour));
-    }
-    let several = one.curves.len() > 1;
-    for (k, curve) in one.curves.iter().enumerate() {
-        let positive =
-            |p: &&(f64, f64)| (!one.logarithmic[0] || p.0 > 0.0) && (!one.logarithmic[1] || p.1 > 0.0 || p.1.is_nan());
-        let points = curve.points.iter().filter(positive).copied();
-        let drawn = match one.marks {
-            true => PictureSeries::marks(points, glyph(k, several), line(k).colour),
-            false => PictureSeries::line(points, line(k)),
-        };
-        all.push(match several || !curve.label.is_empty() {
-            true => drawn.named(curve.label.as_str()),
-            false => drawn,
-        });
-    }
-    all
-}
-
-/// Symbols of the groups of points.
-fn glyph(k: usize, several: bool) -> Glyph {
-    const TURN: f64 = -std::f64::consts::FRAC_PI_2;
-    match k % 5 {
-        _ if !several => Glyph::Ring(2.6, 1.1),
-        0 => Glyph::Ring(2.6, 1.1),
-        1 => Glyph::Square(2.2),
-        2 => Glyph::Polygon(3.4, 3, TURN, true),
-        3 => Glyph::Polygon(3.4, 4, TURN, false),
-        _ => Glyph::Polygon(3.4, 3, -TURN, false),
-    }
 }

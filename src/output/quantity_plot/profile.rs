@@ -15,6 +15,8 @@ use crate::output::numbers::{quantity, significant, trimmed};
 
 /// Name of the deflected shape.
 pub const SHAPE: &str = "shape";
+/// Displacements of modes.
+const MODES: [&str; 2] = ["u1", "u3"];
 
 /// Arrays of a result with one row per instant or mode.
 struct Rows {
@@ -103,12 +105,46 @@ pub fn panels(dir: &Path, quantities: &[String], at: &[f64], label: &str) -> Res
         FolderKind::Run | FolderKind::Cycle => run(dir, quantities, at, label),
         FolderKind::Equilibrium => equilibrium(dir, quantities, at, label),
         FolderKind::Modes => modes(dir, quantities, at, label),
-        kind => Err(Error::Usage(format!(
-            "--at: {} has a result of `slcbeam {}` without shapes; run, periodic, equilibrium and modes have them",
-            dir.display(),
-            kind.command()
-        ))),
+        kind => Err(no_shapes(dir, kind)),
     }
+}
+
+/// Quantities that can be drawn along the beam.
+///
+/// # Errors
+/// The result has no shapes.
+pub fn names(dir: &Path) -> Result<Vec<[String; 3]>> {
+    let row = |name: &str, unit: &str, words: String| [name.to_string(), unit.to_string(), words];
+    let shape = || row(SHAPE, "m", "deflected shape to scale".into());
+    Ok(match FolderKind::find("draw", dir)? {
+        FolderKind::Run | FolderKind::Cycle => {
+            let file = Rows::open(dir, FIELDS)?;
+            let there = BeamField::ALL
+                .into_iter()
+                .filter(|one| file.npz.entry(one.name()).is_some());
+            let fields = there.map(|one| row(one.name(), one.unit(), field(one)));
+            [shape()].into_iter().chain(fields).collect()
+        }
+        FolderKind::Equilibrium => vec![shape()],
+        FolderKind::Modes => MODES
+            .map(|name| {
+                row(
+                    name,
+                    "1",
+                    format!("{} / largest displacement", for_readers(name, "m").0),
+                )
+            })
+            .to_vec(),
+        kind => return Err(no_shapes(dir, kind)),
+    })
+}
+
+fn no_shapes(dir: &Path, kind: FolderKind) -> Error {
+    Error::Usage(format!(
+        "--at: {} has a result of `slcbeam {}` without shapes; run, periodic, equilibrium and modes have them",
+        dir.display(),
+        kind.command()
+    ))
 }
 
 fn unknown(name: &str, known: &[&str]) -> Error {
@@ -240,8 +276,14 @@ fn equilibrium(dir: &Path, quantities: &[String], at: &[f64], label: &str) -> Re
     Ok(vec![QuantityPanel::shape(curves)])
 }
 
+/// Displacements of a mode at the instant of its largest one, relative to that; `all` has amplitude and phase of both displacements.
+fn relative(own: Vec<(f64, f64)>, all: &[(f64, f64)]) -> impl Iterator<Item = f64> {
+    let largest = all.iter().copied().max_by(|p, q| p.0.total_cmp(&q.0));
+    let (size, start) = largest.filter(|p| p.0 > 0.0).unwrap_or((1.0, 0.0));
+    own.into_iter().map(move |(a, phase)| a * (phase - start).cos() / size)
+}
+
 fn modes(dir: &Path, quantities: &[String], at: &[f64], label: &str) -> Result<Vec<QuantityPanel>> {
-    const KNOWN: [&str; 2] = ["u1", "u3"];
     let mut file = Rows::open(dir, "modes.npz")?;
     let theta = file.axis("theta_m")?.unwrap_or_default();
     let mut panels = vec![];
@@ -251,25 +293,26 @@ fn modes(dir: &Path, quantities: &[String], at: &[f64], label: &str) -> Result<V
         } else {
             wanted.strip_suffix("_m").unwrap_or(wanted)
         };
-        if !KNOWN.contains(&name) {
-            return Err(unknown(wanted, &KNOWN));
+        if !MODES.contains(&name) {
+            return Err(unknown(wanted, &MODES));
         }
-        let [amplitude, phase] = [format!("{name}_amplitude_m"), format!("{name}_phase_rad")];
-        let count = file.npz.entry(&amplitude).map_or(0, crate::output::npz::Entry::rows);
+        let count = file
+            .npz
+            .entry("u1_amplitude_m")
+            .map_or(0, crate::output::npz::Entry::rows);
         let numbers: Vec<f64> = (1..=count).map(|k| k as f64).collect();
         let chosen = nearest_of(&numbers, at, "modes", "1")?;
-        let both = file
-            .rows(&amplitude, &chosen)?
-            .into_iter()
-            .zip(file.rows(&phase, &chosen)?);
-        let curves = chosen.iter().zip(both).map(|(k, (a, phase))| {
-            let largest = a.iter().enumerate().max_by(|p, q| p.1.total_cmp(q.1));
-            // the phase is that of the place that moves most
-            let (start, size) = largest.map_or((0.0, 1.0), |(i, a)| (phase[i], *a));
-            let values = a
-                .iter()
-                .zip(&phase)
-                .map(|(a, p)| a * (p - start).cos() / if size > 0.0 { size } else { 1.0 });
+        let mut read = |name: &str| -> Result<_> {
+            let amplitudes = file.rows(&format!("{name}_amplitude_m"), &chosen)?;
+            Ok((amplitudes, file.rows(&format!("{name}_phase_rad"), &chosen)?))
+        };
+        let (u1, u3) = (read("u1")?, read("u3")?);
+        let own = if name == "u1" { &u1 } else { &u3 };
+        let curves = chosen.iter().enumerate().map(|(row, k)| {
+            let pairs = |(a, phase): &(Vec<Vec<f64>>, Vec<Vec<f64>>)| -> Vec<(f64, f64)> {
+                a[row].iter().copied().zip(phase[row].iter().copied()).collect()
+            };
+            let values = relative(pairs(own), &[pairs(&u1), pairs(&u3)].concat());
             NamedCurve::new(
                 joined(label, format!("mode {}", k + 1)),
                 theta.iter().copied().zip(values).collect(),
@@ -278,9 +321,23 @@ fn modes(dir: &Path, quantities: &[String], at: &[f64], label: &str) -> Result<V
         let y = for_readers(name, "m").0;
         panels.push(QuantityPanel::curves(
             along(),
-            (format!("{y} / largest"), "1".into()),
+            (format!("{y} / largest displacement"), "1".into()),
             curves.collect(),
         ));
     }
     Ok(panels)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::relative;
+
+    /// Goal: the bending of an axial mode stays small.
+    #[test]
+    fn modes_are_relative_to_their_largest_displacement() {
+        let (u1, u3) = (vec![(0.0, 0.0), (2e-12, 3.0)], vec![(0.5, 0.3), (2.0, 0.3)]);
+        let all = [u1.clone(), u3.clone()].concat();
+        assert!(relative(u1, &all).all(|y| y.abs() < 1.1e-12));
+        assert_eq!(relative(u3, &all).collect::<Vec<_>>(), [0.25, 1.0]);
+    }
 }

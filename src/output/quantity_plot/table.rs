@@ -12,6 +12,8 @@ use crate::output::sweep::pictures;
 
 /// Number of rows that determine if a column is text.
 const LOOKED_AT: usize = 100;
+/// Table of a sweep.
+pub(super) const SWEEP: &str = "sweep.csv";
 
 /// The table of a kind of result.
 pub(super) struct TableKind {
@@ -54,8 +56,8 @@ fn table_of(kind: FolderKind) -> TableKind {
         FolderKind::Bands => points("bands.csv", "wave number", &["frequency"], Some("motion")),
         FolderKind::Floquet => points("floquet.csv", "real part", &["imaginary part"], Some("part")),
         FolderKind::Map => points("map.csv", "frequency", &["amplitude"], Some("verdict")),
-        FolderKind::Sweep => curve("sweep.csv", "", &[]),
-        FolderKind::Designs => points("sweep.csv", "", &[], Some("case")),
+        FolderKind::Sweep => curve(SWEEP, "", &[]),
+        FolderKind::Designs => points(SWEEP, "", &[], Some("case")),
         FolderKind::Study => TableKind {
             logarithmic: [true; 2],
             ..points("study.csv", "wall_median", &["total_l2"], Some("measure"))
@@ -67,6 +69,16 @@ fn table_of(kind: FolderKind) -> TableKind {
     }
 }
 
+/// A path as one word of a shell.
+pub fn shell_word(path: &Path) -> String {
+    let text = path.display().to_string();
+    let plain = |c: char| c.is_alphanumeric() || "/._-+=:@%,".contains(c);
+    match !text.is_empty() && text.chars().all(plain) {
+        true => text,
+        false => format!("'{}'", text.replace('\'', r"'\''")),
+    }
+}
+
 /// A column of a table.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TableColumn {
@@ -74,8 +86,10 @@ pub struct TableColumn {
     pub name: String,
     /// Unit; `1` if dimensionless.
     pub unit: String,
-    /// True for text.
+    /// True for text or empty cells.
     pub text: bool,
+    /// True if all cells are empty.
+    pub empty: bool,
 }
 
 impl TableColumn {
@@ -146,6 +160,7 @@ impl<'a> ResultTable<'a> {
                 name: name.into(),
                 unit: unit.into(),
                 text: text || !number,
+                empty: !text && !number,
             }
         });
         let columns = columns.collect();
@@ -178,19 +193,21 @@ impl<'a> ResultTable<'a> {
     /// There is none of this name; the message has the nearest one.
     pub fn find(&self, name: &str) -> Result<usize> {
         if let Some(k) = self.columns.iter().position(|column| column.is_named(name)) {
-            return match self.columns[k].text {
+            let column = &self.columns[k];
+            let contents = if column.empty { "no values" } else { "text, not numbers" };
+            return match column.text {
                 false => Ok(k),
                 true => Err(Error::Usage(format!(
-                    "--quantity {name}: this column of {} has text, not numbers",
+                    "--quantity {name}: this column of {} has {contents}",
                     self.known.file
                 ))),
             };
         }
-        let dir = self.dir.display();
+        let (dir, list) = (self.dir.display(), shell_word(self.dir));
         let near = nearest(name, self.numbers().map(|column| column.name.as_str()));
         let near = near.map_or_else(String::new, |near| format!("; did you mean {near}?"));
         Err(Error::Usage(format!(
-            "--quantity {name}: {dir}, a result of `slcbeam {}`, has no such column{near}; `slcbeam plot {dir} --list` prints all names",
+            "--quantity {name}: {dir}, a result of `slcbeam {}`, has no such column{near}; `slcbeam plot {list} --list` prints all names",
             self.kind.command()
         )))
     }
@@ -213,7 +230,31 @@ impl<'a> ResultTable<'a> {
     }
 
     /// Usual quantities.
-    pub fn usual(&self) -> Vec<usize> {
+    ///
+    /// # Errors
+    /// The folder has a picture of its own, and no single column of the table is the result.
+    pub fn usual(&self) -> Result<Vec<usize>> {
+        use FolderKind::{Effects, Fit, Map, Optimum, Sense, Study};
+        if ![Study, Effects, Fit, Sense, Optimum, Map].contains(&self.kind) {
+            return Ok(self.main());
+        }
+        let dir = shell_word(self.dir);
+        let there = |name: &&str| name.ends_with(".svg") && self.dir.join(name).is_file();
+        let pictures: Vec<&str> = self.kind.files().into_iter().filter(there).collect();
+        let has = match pictures.as_slice() {
+            [] => String::new(),
+            pictures => format!("its picture is {} in that folder; ", pictures.join(", ")),
+        };
+        Err(Error::Usage(format!(
+            "{}: the result of `slcbeam {}` has no usual quantity; {has}--quantity draws columns of {}, and `slcbeam plot {dir} --list` \
+             prints their names",
+            self.dir.display(),
+            self.kind.command(),
+            self.known.file
+        )))
+    }
+
+    fn main(&self) -> Vec<usize> {
         let shown = self.known.shown.iter().filter_map(|name| {
             let begins = |column: &TableColumn| column.name == *name || column.name.starts_with(&format!("{name} "));
             self.columns.iter().position(|column| begins(column) && !column.text)
@@ -237,5 +278,42 @@ impl<'a> ResultTable<'a> {
         let first = after.or_else(|| self.abscissa()).map_or(0, |k| k + 1);
         let next = (first..self.columns.len()).find(|k| !self.columns[*k].text);
         next.into_iter().collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::fs;
+
+    /// Goal: a result with a picture of its own names it instead of a useless curve; its columns remain.
+    #[test]
+    fn some_results_have_pictures_of_their_own() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let dir = folder.path().join("a study");
+        fs::create_dir(&dir).expect("a folder");
+        let files = [
+            ("study.json", "{}"),
+            ("study.csv", "nodes [1],wall_median [s],total_l2 [1],none\n3,0.1,0.2,\n"),
+            ("study.svg", ""),
+        ];
+        for (name, text) in files {
+            fs::write(dir.join(name), text).expect("a file");
+        }
+        let table = ResultTable::open(&dir).expect("a table");
+        let why = table.usual().expect_err("no usual quantity").to_string();
+        let hint = format!("slcbeam plot '{}' --list", dir.display());
+        for part in ["study.svg", "study.csv", &hint] {
+            assert!(why.contains(part), "{part}: {why}");
+        }
+        assert!(table.find("total_l2").is_ok());
+        let why = table.find("none").expect_err("an empty column").to_string();
+        assert!(why.contains("has no values"), "{why}");
+    }
+
+    #[test]
+    fn paths_are_words_of_a_shell() {
+        assert_eq!(shell_word(Path::new("out/first-2")), "out/first-2");
+        assert_eq!(shell_word(Path::new("it's $1")), r"'it'\''s $1'");
     }
 }

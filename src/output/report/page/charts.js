@@ -1,5 +1,17 @@
 // Charts of many runs: marks that are read with pointer or keys, bars that are put in order, histories of several runs.
 
+/** Round values from `a` to `b`, two at least: each with its logarithm and a text with enough digits. */
+function roundMarks(a, b, count, unit) {
+  const least = (b - a) / Math.max(count, 5);
+  const power = 10 ** Math.floor(Math.log10(least));
+  const step = [1, 2, 5, 10].map((m) => m * power).find((s) => s >= least * (1 - 1e-9));
+  const [factor, shown] = unit ? scaledUnit(b, unit) : [1, ""];
+  const digits = Math.floor(Math.log10(b)) - Math.floor(Math.log10(step) + 1e-9) + 1;
+  const all = [];
+  for (let k = Math.ceil(a / step - 1e-9); k * step <= b * (1 + 1e-12); k++) all.push([Math.log10(k * step), `${Number(((k * step) / factor).toPrecision(digits))} ${shown}`.trim()]);
+  return all;
+}
+
 /** Marks of an axis of decimal logarithms: decades, or 1, 2 and 5 of each where there are few; two at least. */
 function logMarks(low, high, count, unit) {
   const power = (v) => {
@@ -17,7 +29,7 @@ function logMarks(low, high, count, unit) {
     for (let n = Math.floor(low); n <= high; n++) for (const m of [1, 2, 5]) all.push(n + Math.log10(m));
     all = all.filter(within);
   }
-  if (all.length < 2) return [low, high].map((v) => [v, unit ? text(10 ** v) : significant(10 ** v, 3)]);
+  if (all.length < 2) return roundMarks(10 ** low, 10 ** high, count, unit);
   return all.map((v) => [v, text(10 ** v)]);
 }
 

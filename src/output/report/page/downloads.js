@@ -98,7 +98,7 @@ function panelDrawing(times, series, title, { label, logarithmic }, range) {
   for (const s of series) for (const side of [-1, 1]) limits = extent(Array.from(s.values, (v, k) => (inside[k] ? v + side * (s.widths?.[k] || 0) : NaN)), limits);
   const [low, high] = roomy(limits);
   const x = { low: place(from), high: place(to), unit: xunit, name: xname };
-  if (logarithmic) Object.assign(x, { unit: "", name: label, marks: logMarks(x.low, x.high, 6, "").map(([v]) => [v, shortest(Number((10 ** v).toPrecision(3)))]) });
+  if (logarithmic) Object.assign(x, { unit: "", name: label, marks: x.high - x.low < 1 ? roundMarks(from, to, 6, "") : logMarks(x.low, x.high, 6, "").map(([v]) => [v, shortest(Number((10 ** v).toPrecision(3)))]) });
   const unit = series[0].unit || /\[(.*)\]$/.exec(title)?.[1] || "1";
   const plot = chart(640, 300, x, { low, high, unit, name: title.replace(/ \[.*\]$/, "") }, title);
   const at = (k, v) => [plot.px(place(times[k])), plot.py(v)];
