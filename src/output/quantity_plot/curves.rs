@@ -116,8 +116,11 @@ impl ResultTable<'_> {
                 curves: curves.collect(),
                 marks: self.known.marks,
                 logarithmic: match over {
-                    None if self.known.file == SWEEP => [is_geometric(read.column(x)), false],
-                    None => self.axes(&of.name),
+                    None => {
+                        let [along, up] = self.axes(&of.name);
+                        let by_factors = self.known.file == SWEEP && is_geometric(read.column(x));
+                        [along || by_factors, up]
+                    }
                     Some(_) => [false; 2],
                 },
                 equal: false,

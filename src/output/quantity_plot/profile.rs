@@ -277,10 +277,10 @@ fn equilibrium(dir: &Path, quantities: &[String], at: &[f64], label: &str) -> Re
 }
 
 /// Displacements of a mode at the instant of its largest one, relative to that; `all` has amplitude and phase of both displacements.
-fn relative(own: Vec<(f64, f64)>, all: &[(f64, f64)]) -> impl Iterator<Item = f64> {
+fn relative(own: &[(f64, f64)], all: &[(f64, f64)]) -> Vec<f64> {
     let largest = all.iter().copied().max_by(|p, q| p.0.total_cmp(&q.0));
     let (size, start) = largest.filter(|p| p.0 > 0.0).unwrap_or((1.0, 0.0));
-    own.into_iter().map(move |(a, phase)| a * (phase - start).cos() / size)
+    own.iter().map(|(a, phase)| a * (phase - start).cos() / size).collect()
 }
 
 fn modes(dir: &Path, quantities: &[String], at: &[f64], label: &str) -> Result<Vec<QuantityPanel>> {
@@ -312,7 +312,7 @@ fn modes(dir: &Path, quantities: &[String], at: &[f64], label: &str) -> Result<V
             let pairs = |(a, phase): &(Vec<Vec<f64>>, Vec<Vec<f64>>)| -> Vec<(f64, f64)> {
                 a[row].iter().copied().zip(phase[row].iter().copied()).collect()
             };
-            let values = relative(pairs(own), &[pairs(&u1), pairs(&u3)].concat());
+            let values = relative(&pairs(own), &[pairs(&u1), pairs(&u3)].concat());
             NamedCurve::new(
                 joined(label, format!("mode {}", k + 1)),
                 theta.iter().copied().zip(values).collect(),
@@ -337,7 +337,7 @@ mod tests {
     fn modes_are_relative_to_their_largest_displacement() {
         let (u1, u3) = (vec![(0.0, 0.0), (2e-12, 3.0)], vec![(0.5, 0.3), (2.0, 0.3)]);
         let all = [u1.clone(), u3.clone()].concat();
-        assert!(relative(u1, &all).all(|y| y.abs() < 1.1e-12));
-        assert_eq!(relative(u3, &all).collect::<Vec<_>>(), [0.25, 1.0]);
+        assert!(relative(&u1, &all).iter().all(|y| y.abs() < 1.1e-12));
+        assert_eq!(relative(&u3, &all), [0.25, 1.0]);
     }
 }
