@@ -359,10 +359,11 @@ fn wrong_requests_are_explained() {
     let folder = tempfile::tempdir().expect("a folder");
     let run = run_of(&folder);
     let modes = made(&folder, "rest", &["equilibrium", "cases/bend-dry.json"]);
-    let cases: [(&[&str], &str); 11] = [
+    let cases: [(&[&str], &str); 12] = [
         (&[&run, "-q", "tip_u2"], "has no such column; did you mean tip_u"),
         (&[&run, &modes], "results of one kind share a picture"),
         (&[&run, &run, "--label", "a"], "1 for 2 results"),
+        (&[&run, "--label", "a\nb"], "has a line break"),
         (&[&run, "--from", "1", "--to", "0.5"], "--from must be below --to"),
         (&[&run, "--from", "1"], "nothing to draw within this range"),
         (&[&run, "--width", "5"], "expected 20 to 1000"),
