@@ -92,7 +92,7 @@ def test_versions_agree():
 
 def test_sources_are_packaged_with_all_that_a_build_reads(tmp_path):
     """The crates as for crates.io, and the source package of Python."""
-    told("cargo", "package", "--workspace", "--no-verify", "--allow-dirty", "--offline", "--target-dir", tmp_path, cwd=ROOT)
+    told("cargo", "package", "--workspace", "--no-verify", "--allow-dirty", "--target-dir", tmp_path, cwd=ROOT)
     crates = {path.name.rsplit("-", 1)[0]: path for path in (tmp_path / "package").glob("*.crate")}
     assert {"slcbeam", "slcbeam-dense", "slcbeam-section"} <= set(crates)
     assert crates["slcbeam"].stat().st_size < 10e6, "crates.io accepts 10 MB"
