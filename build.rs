@@ -1,5 +1,5 @@
-//! Finds SUNDIALS 6 and KLU, declares to Rust what `sundials-sys` does not: KLU's functions and the version query; and tells the
-//! commit of the sources.
+//! Finds SUNDIALS 6 and KLU, declares functions that `sundials-sys` lacks (KLU, version query) to Rust, and passes on the commit of the
+//! sources.
 
 use std::env;
 use std::path::{Path, PathBuf};

@@ -236,25 +236,25 @@ assert abs(twice[1] / small[1] - (twice[0] / small[0]) ** 2) < 0.01, (small, twi
 #[test]
 fn inflation_needs_a_law_and_rising_pressures() {
     let plane = "/section/three_d=false";
-    let told = |more: &[&str]| {
+    let inflate = |more: &[&str]| {
         let done = run("ribbed", &[&["--set", plane], more].concat());
         let text = String::from_utf8_lossy(&done.stdout).into_owned() + &String::from_utf8_lossy(&done.stderr);
         (done.status.code(), text)
     };
-    let (code, text) = told(&["--inflate", "1000"]);
+    let (code, text) = inflate(&["--inflate", "1000"]);
     assert!(code == Some(3) && text.contains("needs a law"), "{text}");
     assert!(
         text.contains("/section/material/law") && text.contains("neo_hookean"),
         "{text}"
     );
-    let (code, text) = told(&["--inflate", "2000,1000"]);
+    let (code, text) = inflate(&["--inflate", "2000,1000"]);
     assert!(code == Some(2) && text.contains("rising order"), "{text}");
     for bad in ["0", "-5", "much"] {
-        let (code, text) = told(&[&format!("--inflate={bad}")]);
+        let (code, text) = inflate(&[&format!("--inflate={bad}")]);
         assert!(code == Some(2) && text.contains(bad), "{text}");
     }
     let law = ["--set", r#"/section/material/law="neo_hookean""#];
-    let (code, text) = told(&[&law[..], &["--inflate", "1000,80000"]].concat());
+    let (code, text) = inflate(&[&law[..], &["--inflate", "1000,80000"]].concat());
     assert!(
         code == Some(0) && text.contains("blocked moment") && text.contains("Chambers balloon"),
         "{text}"

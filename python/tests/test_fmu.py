@@ -47,9 +47,9 @@ class Fmu:
         self.t = 0.0
 
     def step(self, size, **_):
-        told = self.slave.doStep(currentCommunicationPoint=self.t, communicationStepSize=size)
-        self.t = told[3]
-        return told
+        outcome = self.slave.doStep(currentCommunicationPoint=self.t, communicationStepSize=size)
+        self.t = outcome[3]
+        return outcome
 
     def __setitem__(self, name, value):
         self.slave.setFloat64([self.references[name]], [value])

@@ -286,27 +286,29 @@ fn relative(own: &[(f64, f64)], all: &[(f64, f64)]) -> Vec<f64> {
 fn modes(dir: &Path, quantities: &[String], at: &[f64], label: &str) -> Result<Vec<QuantityPanel>> {
     let mut file = Rows::open(dir, "modes.npz")?;
     let theta = file.axis("theta_m")?.unwrap_or_default();
-    let mut panels = vec![];
-    for wanted in quantities {
+    let named = |wanted: &String| {
         let name = if wanted == SHAPE {
             "u1"
         } else {
             wanted.strip_suffix("_m").unwrap_or(wanted)
         };
-        if !MODES.contains(&name) {
-            return Err(unknown(wanted, &MODES));
-        }
-        let count = file
-            .npz
-            .entry("u1_amplitude_m")
-            .map_or(0, crate::output::npz::Entry::rows);
-        let numbers: Vec<f64> = (1..=count).map(|k| k as f64).collect();
-        let chosen = nearest_of(&numbers, at, "modes", "1")?;
-        let mut read = |name: &str| -> Result<_> {
-            let amplitudes = file.rows(&format!("{name}_amplitude_m"), &chosen)?;
-            Ok((amplitudes, file.rows(&format!("{name}_phase_rad"), &chosen)?))
-        };
-        let (u1, u3) = (read("u1")?, read("u3")?);
+        let known = MODES.iter().find(|known| **known == name);
+        known.copied().ok_or_else(|| unknown(wanted, &MODES))
+    };
+    let names: Vec<&str> = quantities.iter().map(named).collect::<Result<_>>()?;
+    let count = file
+        .npz
+        .entry("u1_amplitude_m")
+        .map_or(0, crate::output::npz::Entry::rows);
+    let numbers: Vec<f64> = (1..=count).map(|k| k as f64).collect();
+    let chosen = nearest_of(&numbers, at, "modes", "1")?;
+    let mut read = |name: &str| -> Result<_> {
+        let amplitudes = file.rows(&format!("{name}_amplitude_m"), &chosen)?;
+        Ok((amplitudes, file.rows(&format!("{name}_phase_rad"), &chosen)?))
+    };
+    let (u1, u3) = (read("u1")?, read("u3")?);
+    let mut panels = vec![];
+    for name in names {
         let own = if name == "u1" { &u1 } else { &u3 };
         let curves = chosen.iter().enumerate().map(|(row, k)| {
             let pairs = |(a, phase): &(Vec<Vec<f64>>, Vec<Vec<f64>>)| -> Vec<(f64, f64)> {

@@ -49,21 +49,26 @@ impl HeldInput {
         }
     }
 
-    /// Signal that changes to a value: by a jump at the first of two instants [s], or from there to the second for an input that must not
-    /// jump.
-    pub fn change(&self, [t, until]: [f64; 2], value: f64) -> (Signal, Option<PiecewiseCurve>) {
-        let path = self.path.as_ref().map(|path| path.moved([t, until], value));
-        let signal = match &path {
-            Some(path) => Signal::Table(Table::from_curve(path.clone())),
-            None => Signal::Ramp(Ramp {
-                from: self.value,
-                to: value,
-                start_s: t,
-                duration_s: 0.0,
-                shape: RampShape::default(),
-            }),
-        };
-        (signal, path)
+    /// Changes to a value: by a jump at the first of two instants [s], or from there to the second for an input that must not jump. Returns
+    /// the signal of the change.
+    pub fn change(&mut self, [t, until]: [f64; 2], value: f64) -> Signal {
+        if let Some(path) = &mut self.path {
+            *path = path.moved([t, until], value);
+            return self.signal();
+        }
+        Signal::Ramp(Ramp {
+            from: self.value,
+            to: value,
+            start_s: t,
+            duration_s: 0.0,
+            shape: RampShape::default(),
+        })
+    }
+
+    /// True if the input moves beyond time `t` [s].
+    pub fn moves_after(&self, t: f64) -> bool {
+        let ends = self.path.as_ref().and_then(PiecewiseCurve::ends);
+        ends.is_some_and(|[_, end]| end > t)
     }
 }
 

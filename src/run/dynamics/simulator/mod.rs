@@ -22,7 +22,7 @@ use crate::case::Case;
 use crate::dae::{BeamDae, Dae};
 use crate::discrete::{resolution, start};
 use crate::error::{Error, Result, SolverError};
-use crate::functions::{PiecewiseCurve, Signal};
+use crate::functions::Signal;
 use crate::integrate::{StartOptions, Starter};
 use crate::onestep::OneStep;
 use crate::run::control_loop::ControlLoop;
@@ -229,17 +229,12 @@ impl Simulator {
         let mut valves = false;
         self.course = (t, None);
         for (one, value) in self.held.iter_mut().zip(values) {
-            let (signal, path) = one.change([t, until], *value);
+            let signal = one.change([t, until], *value);
             dae.put_signal(&one.places, &signal);
             valves |= one.opens && one.value != *value;
-            if path
-                .as_ref()
-                .and_then(PiecewiseCurve::ends)
-                .is_some_and(|[_, end]| end > t)
-            {
+            if one.moves_after(t) {
                 self.course.1 = Some(until);
             }
-            one.path = path;
         }
         self.switch(t)?;
         let dae = self.solver.dae_mut();
