@@ -64,16 +64,9 @@ pub fn bands(asked: &BandsArguments) -> Result<ExitCode> {
     }
     let found = compute(&case, lattice, band, asked.points, true)?;
     let answer = answer(&case.name, band, &found);
-    let written = files::write(&mut folder, &answer).map(|_| ());
-    let written = written.and(report::complete(&folder, &case));
-    super::print_result(
-        asked.json,
-        folder.dir(),
-        written,
-        || results::text(&answer),
-        || files::describe(&answer),
-    )?;
-    Ok(ExitCode::SUCCESS)
+    let written = files::write(&mut folder, &answer).and(report::complete(&folder, &case));
+    let (text, words) = (|| results::text(&answer), || files::describe(&answer));
+    super::print_result(asked.json, folder.dir(), written, text, words)
 }
 
 fn answer(case: &str, band: [f64; 2], found: &BandStructure) -> BandsRecord {

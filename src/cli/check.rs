@@ -5,7 +5,7 @@ use std::fmt::Write as _;
 use std::path::Path;
 use std::process::ExitCode;
 
-use serde_json::json;
+use serde_json::{Map, json};
 use textwrap::Options;
 
 use super::arguments::CheckArguments;
@@ -67,24 +67,19 @@ pub fn check(asked: &CheckArguments) -> Result<ExitCode> {
     let disk = resources::disk(case, &system, 0).all();
     let free = machine::free(Path::new("."));
     if asked.json {
-        let audit: Vec<_> = findings
-            .iter()
-            .map(|f| json!({"name": f.name, "value": f.value, "wanted": f.wanted, "good": f.good, "consequence": f.consequence}))
-            .collect();
-        let effects: serde_json::Map<_, _> = system
-            .model
-            .effects
-            .decisions
-            .iter()
-            .map(|d| {
-                (
-                    d.effect.to_string(),
-                    json!({"value": if d.on { "on" } else { "off" }, "reason": d.cause.to_string()}),
-                )
-            })
-            .collect();
+        let audit = findings.iter().map(
+            |f| json!({"name": f.name, "value": f.value, "wanted": f.wanted, "good": f.good, "consequence": f.consequence}),
+        );
+        let decision = |d: &Decision| {
+            let value = if d.on { "on" } else { "off" };
+            (
+                d.effect.to_string(),
+                json!({"value": value, "reason": d.cause.to_string()}),
+            )
+        };
+        let effects: Map<_, _> = system.model.effects.decisions.iter().map(decision).collect();
         let all = json!({
-            "case": case.name, "unknowns": system.layout.len, "characteristic": numbers, "audit": audit,
+            "case": case.name, "unknowns": system.layout.len, "characteristic": numbers, "audit": audit.collect::<Vec<_>>(),
             "effects": effects, "method": {"value": chosen.name(), "reason": chosen.reason},
             "needs": {
                 "memory_bytes": needs.memory, "memory_available_bytes": machine::memory(),
@@ -92,8 +87,7 @@ pub fn check(asked: &CheckArguments) -> Result<ExitCode> {
             },
             "max_order": {"value": order, "reason": why}, "origins": case.origins.describe(), "warnings": warnings,
         });
-        super::print(&format!("{all:#}\n"))?;
-        return Ok(ExitCode::SUCCESS);
+        return super::answer(true, || all, String::new);
     }
     let mut text = format!("{}: valid", case.name);
     if !case.about.is_empty() {
@@ -182,8 +176,7 @@ pub fn check(asked: &CheckArguments) -> Result<ExitCode> {
             let _ = writeln!(text, "  - {w}");
         }
     }
-    super::print(&text)?;
-    Ok(ExitCode::SUCCESS)
+    super::answer(false, || json!(null), || text)
 }
 
 /// Effects as name, state and cause. Neighbors with the same state and cause share a line, unless `all` is set.

@@ -14,7 +14,7 @@ use super::arguments::CaseArguments;
 use super::inflation;
 use super::interrupt::WallArguments;
 use crate::case::{self, inherited, section};
-use crate::error::{Error, Result};
+use crate::error::{Result, usage};
 use crate::output::columns::table;
 use crate::output::folder::replace;
 use crate::output::numbers::significant;
@@ -79,26 +79,25 @@ pub fn coefficients(asked: &CoefficientsArguments) -> Result<ExitCode> {
     };
     let inflation = inflation::follow(&written, asked)?;
     let spatial = asked.three_d.then(|| written.three_dimensional()).transpose()?;
-    super::print(&match asked.json {
-        true => {
-            let mut all = in_json(&found, spatial.as_ref(), energy.as_ref())?;
-            if let Some(inflation) = &inflation {
-                all["inflation"] = inflation::in_json(inflation, &linear(&found, spatial.as_ref()));
-            }
-            format!("{all:#}\n")
+    // growths at finite strain multiply the compliance in three dimensions where it is computed
+    let linear = spatial
+        .as_ref()
+        .map_or(found.numbers.compliance, |spatial| spatial.compliance);
+    let value = || {
+        let mut all = in_json(&found, spatial.as_ref(), energy.as_ref());
+        if let Some(inflation) = &inflation {
+            all["inflation"] = inflation::in_json(inflation, &linear);
         }
-        false => {
-            let grown = inflation.map(|inflation| inflation::in_words(&inflation, &linear(&found, spatial.as_ref())));
-            let energy = energy.map(of_energy);
-            in_words(&written.section, &found, spatial.as_ref()) + &energy.or(grown).unwrap_or_default()
-        }
-    })?;
-    Ok(ExitCode::SUCCESS)
-}
-
-/// Compliance that growths at finite strain multiply: in three dimensions where it is computed.
-fn linear(found: &Coefficients, spatial: Option<&Spatial>) -> [[f64; 4]; 4] {
-    spatial.map_or(found.numbers.compliance, |spatial| spatial.compliance)
+        all
+    };
+    let text = || {
+        let grown = inflation
+            .as_ref()
+            .map(|inflation| inflation::in_words(inflation, &linear));
+        let energy = energy.as_ref().map(of_energy);
+        in_words(&written.section, &found, spatial.as_ref()) + &energy.or(grown).unwrap_or_default()
+    };
+    super::answer(asked.json, value, text)
 }
 
 /// Number of cells of the beam in a written case.
@@ -111,7 +110,7 @@ fn write_case(written: &section::SectionFile, path: &Path, asked: &CoefficientsA
             "{} exists and is not overwritten; name another file, or use --force",
             path.display()
         );
-        return Err(Error::Usage(what));
+        return usage(what);
     }
     let name = path.file_stem().and_then(|stem| stem.to_str()).unwrap_or("section");
     let name: String = name
@@ -147,14 +146,12 @@ fn write_case(written: &section::SectionFile, path: &Path, asked: &CoefficientsA
         case["network"] = json!({"chains": chains});
     }
     replace(path, format!("{case:#}\n"))?;
-    super::print(&match asked.json {
-        true => format!("{:#}\n", json!({"case": path})),
-        false => {
-            let next = format!("wrote {}\nnext: slcbeam check {0}; slcbeam run {0}\n", path.display());
-            next + &open_ends(own, &written.coefficients()?.numbers)
-        }
-    })?;
-    Ok(ExitCode::SUCCESS)
+    let next = format!("wrote {}\nnext: slcbeam check {0}; slcbeam run {0}\n", path.display());
+    let text = match asked.json {
+        true => next,
+        false => next + &open_ends(own, &written.coefficients()?.numbers),
+    };
+    super::answer(asked.json, || json!({"case": path}), || text)
 }
 
 fn rows(found: &Coefficients) -> Vec<Row> {
@@ -223,7 +220,7 @@ fn beside_mid_height(section: &Section, numbers: &Numbers) -> String {
 }
 
 /// Text about the energy at finite strain.
-fn of_energy(energy: StrainEnergy) -> String {
+fn of_energy(energy: &StrainEnergy) -> String {
     let names = [
         "stretch [1]",
         "curvature [1/m]",
@@ -241,16 +238,15 @@ fn of_energy(energy: StrainEnergy) -> String {
     )
 }
 
-fn in_json(found: &Coefficients, spatial: Option<&Spatial>, energy: Option<&StrainEnergy>) -> Result<Value> {
-    let value = |of: &dyn Fn() -> serde_json::Result<Value>| of().map_err(|e| Error::Usage(e.to_string()));
-    let mut all = value(&|| serde_json::to_value(&found.numbers))?;
-    all["errors"] = value(&|| serde_json::to_value(&found.errors))?;
+fn in_json(found: &Coefficients, spatial: Option<&Spatial>, energy: Option<&StrainEnergy>) -> Value {
+    let mut all = json!(found.numbers);
+    all["errors"] = json!(found.errors);
     all["asymmetry"] = json!(found.asymmetry);
     all["unknowns"] = json!(found.unknowns);
     all["neutral_axis_m"] = json!(neutral_axis(&found.numbers));
     all["coupling_number"] = json!(coupling_number(&found.numbers));
     if let Some(energy) = energy {
-        all["strain_energy"] = value(&|| serde_json::to_value(energy))?;
+        all["strain_energy"] = json!(energy);
     }
     if let Some(spatial) = spatial {
         let in_three_d = rows(found).into_iter().filter_map(|row| {
@@ -262,7 +258,7 @@ fn in_json(found: &Coefficients, spatial: Option<&Spatial>, energy: Option<&Stra
         all["three_d"]["errors"] = json!(spatial.errors);
         all["three_d"]["unknowns"] = json!(spatial.unknowns);
     }
-    Ok(all)
+    all
 }
 
 /// Height of the neutral axis above mid-height [m].

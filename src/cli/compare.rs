@@ -9,11 +9,12 @@ use serde_json::Value;
 use super::arguments::CompareArguments;
 use super::{compare_responses, terminal};
 use crate::case;
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, usage};
 use crate::output::columns::{self, aligned};
 use crate::output::folder::{CASE, replace_alike};
 use crate::output::kind::FolderKind;
 use crate::output::numbers::{percent, quantity, significant};
+use crate::output::report::WrittenPage;
 use crate::output::{comparison as recordings, fit, reading, report, response};
 use crate::results;
 use crate::study::compare::changes::Change;
@@ -30,7 +31,6 @@ const MOST: usize = 40;
 
 /// Reads and compares the folders, draws on request, prints.
 pub fn compare(asked: &CompareArguments) -> Result<ExitCode> {
-    let usage = |what: String| Err(Error::Usage(what));
     if let Some(page) = asked.out.as_deref().filter(|path| ends(path, "html") && !path.is_dir()) {
         return usage(format!(
             "--out {}: a page is report.html in a folder of its own; name the folder, such as {}",
@@ -78,31 +78,23 @@ pub fn compare(asked: &CompareArguments) -> Result<ExitCode> {
     let written = asked.out.as_ref().map_or(Ok(()), |path| {
         if picture(path) {
             let [one] = found.comparisons.as_slice() else {
-                return Err(Error::Usage(format!(
+                return usage(format!(
                     "--out {}: a picture shows two results only; name a folder for a page of all results",
                     path.display()
-                )));
+                ));
             };
             let other = usize::from(reference == 0);
             let text = recordings::picture(&all[reference], &all[other], one)
                 .ok_or_else(|| Error::Usage("nothing to draw: the two have no quantity in common".into()))?;
             replace_alike(path, &text, &["<svg", "<?xml"])
         } else {
-            let place = report::compared(path, &all, reference, &found)?.path;
-            if !asked.json {
-                terminal::print_line(&format!("page: {}", place.display()));
-            }
-            Ok(())
+            report::compared(path, &all, reference, &found).map(|page| announce(asked, &page))
         }
     });
-    let written = answerable(written)?;
-    super::print(&match (found.comparisons.as_slice(), asked.json) {
-        ([one], true) => results::text(one),
-        ([one], false) => table(one),
-        (_, true) => results::text(&found),
-        (_, false) => several(&found),
-    })?;
-    written.map(|()| ExitCode::SUCCESS)
+    match found.comparisons.as_slice() {
+        [one] => answer(asked, written, || results::value(one), || table(one)),
+        _ => answer(asked, written, || results::value(&found), || several(&found)),
+    }
 }
 
 /// Reads the result of a run, or of a cycle, which is a run over one period.
@@ -193,10 +185,10 @@ fn with_data(asked: &CompareArguments) -> Result<ExitCode> {
         .map(|text| Match::parse(text))
         .collect::<Result<Vec<_>>>()?;
     let [folder, data] = asked.results.as_slice() else {
-        return Err(Error::Usage(format!(
+        return usage(format!(
             "--match: one result folder and one file of data, not {} of them",
             asked.results.len()
-        )));
+        ));
     };
     let table = DataTable::read(data)?;
     let run = recording(folder)?;
@@ -214,26 +206,29 @@ fn with_data(asked: &CompareArguments) -> Result<ExitCode> {
         if picture(path) {
             replace_alike(path, &text, &["<svg", "<?xml"])
         } else {
-            let place = report::over_data(path, &text, &found)?.path;
-            if !asked.json {
-                terminal::print_line(&format!("page: {}", place.display()));
-            }
-            Ok(())
+            report::over_data(path, &text, &found).map(|page| announce(asked, &page))
         }
     });
-    let written = answerable(written)?;
-    super::print(&match asked.json {
-        true => results::text(&found),
-        false => fit::comparison(&found),
-    })?;
-    written.map(|()| ExitCode::SUCCESS)
+    answer(asked, written, || results::value(&found), || fit::comparison(&found))
 }
 
-/// Separates errors of writing, after which the answer is still printed, from others.
-pub(super) fn answerable(written: Result<()>) -> Result<Result<()>> {
+/// Names the page of a comparison.
+fn announce(asked: &CompareArguments, page: &WrittenPage) {
+    if !asked.json {
+        terminal::print_line(&format!("page: {}", page.path.display()));
+    }
+}
+
+/// Prints a comparison, also after an error of writing.
+pub(super) fn answer(
+    asked: &CompareArguments,
+    written: Result<()>,
+    value: impl FnOnce() -> Value,
+    text: impl FnOnce() -> String,
+) -> Result<ExitCode> {
     match written {
         Err(error) if !matches!(error, Error::Output { .. }) => Err(error),
-        written => Ok(written),
+        written => super::answer(asked.json, value, text).and_then(|code| written.map(|()| code)),
     }
 }
 

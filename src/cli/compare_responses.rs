@@ -4,8 +4,8 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use super::arguments::CompareArguments;
-use super::compare::{answerable, picture, same};
-use crate::error::{Error, Result};
+use super::compare::{answer, picture, same};
+use crate::error::{Error, Result, usage};
 use crate::output::folder::{self, replace_alike};
 use crate::output::response;
 use crate::results;
@@ -24,39 +24,26 @@ pub fn compare(asked: &CompareArguments) -> Result<ExitCode> {
     };
     let written = asked.out.as_ref().map_or(Ok(()), |path| {
         if !picture(path) {
-            let what = format!(
+            return usage(format!(
                 "--out {}: for frequency responses a picture, a file that ends in .svg",
                 path.display()
-            );
-            return Err(Error::Usage(what));
+            ));
         }
-        let parent = path.parent().map(|parent| {
-            if parent.as_os_str().is_empty() {
-                Path::new(".")
-            } else {
-                parent
-            }
-        });
-        if let Some(folder) = asked
-            .results
-            .iter()
-            .find(|one| parent.is_some_and(|parent| same(one, parent)))
-        {
-            let what = format!(
+        let here = |parent: &Path| match parent.as_os_str().is_empty() {
+            true => PathBuf::from("."),
+            false => parent.to_path_buf(),
+        };
+        let inside = |one: &&PathBuf| path.parent().is_some_and(|parent| same(one, &here(parent)));
+        if let Some(folder) = asked.results.iter().find(inside) {
+            return usage(format!(
                 "--out {}: {} is one of the results; choose another folder",
                 path.display(),
                 folder.display()
-            );
-            return Err(Error::Usage(what));
+            ));
         }
         let text = response::overlay(&all).and_then(|picture| picture.svg());
         let text = text.ok_or_else(|| Error::Usage("nothing to draw".into()))?;
         replace_alike(path, &text, &["<svg", "<?xml"])
     });
-    let written = answerable(written)?;
-    super::print(&match asked.json {
-        true => results::text(&all),
-        false => response::peaks(&all),
-    })?;
-    written.map(|()| ExitCode::SUCCESS)
+    answer(asked, written, || results::value(&all), || response::peaks(&all))
 }

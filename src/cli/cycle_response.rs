@@ -6,7 +6,7 @@ use nalgebra::Complex;
 
 use super::response::{ResponseArguments, coarse};
 use super::{interrupt, progress_line, resources, terminal};
-use crate::error::{Code, Error, Result};
+use crate::error::{Code, Result, usage};
 use crate::output::kind::FolderKind;
 use crate::output::report;
 use crate::output::response as files;
@@ -41,22 +41,15 @@ pub fn response(asked: &ResponseArguments, request: Request) -> Result<ExitCode>
     let found = interrupt::before_a_cycle(request.respond(&case, cycle, &stop), &stop)?;
     bar.finish_and_clear();
     let answer = answer(&case.name, &found)?;
-    let written = files::write(&mut folder, &answer).map(|_| ());
-    let written = written.and(report::complete(&folder, &case));
-    super::print_result(
-        asked.json,
-        folder.dir(),
-        written,
-        || results::text(&answer),
-        || files::describe(&answer),
-    )?;
-    Ok(ExitCode::SUCCESS)
+    let written = files::write(&mut folder, &answer).and(report::complete(&folder, &case));
+    let (text, words) = (|| results::text(&answer), || files::describe(&answer));
+    super::print_result(asked.json, folder.dir(), written, text, words)
 }
 
 fn answer(case: &str, found: &CycleBand) -> Result<ResponseRecord> {
     let mut curves = found.curves.iter().map(curve);
     let Some(first) = curves.next() else {
-        return Err(Error::Usage("--output: expected at least one".into()));
+        return usage("--output: expected at least one");
     };
     let cycle = &found.cycle;
     let mut warnings = cycle.range.clone();

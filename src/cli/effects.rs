@@ -8,7 +8,7 @@ use super::{interrupt, journal, progress_line, resources, terminal};
 use crate::case::schema::Effects;
 use crate::case::{self, Case};
 use crate::discrete::System;
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, usage};
 use crate::output::effects as files;
 use crate::output::folder::replace;
 use crate::output::kind::FolderKind;
@@ -39,8 +39,7 @@ pub fn effects(asked: &EffectsArguments) -> Result<ExitCode> {
     let stopped = interrupt::raised(&flag);
     let found = journal::outcome(found, &folder, stopped)?;
     let shown = files::ShownQuantity::choose(&found, asked.measure.as_deref());
-    let written = files::write(&mut folder, &found, &shown).map(|_| ());
-    let written = written.and(report::complete(&folder, &case));
+    let written = files::write(&mut folder, &found, &shown).and(report::complete(&folder, &case));
     let mut written = journal::end(&evaluations, &folder, stopped, written);
     let mut said = String::new();
     // effects that were not tried have no recommendation
@@ -71,7 +70,7 @@ fn write(case: &Case, found: &Ablation) -> Result<String> {
     let now = case::text(path).unwrap_or_default();
     if now != case.source.text {
         let what = "changed during the search for its effects; nothing is written";
-        return Err(Error::Usage(format!("{} {what}", path.display())));
+        return usage(format!("{} {what}", path.display()));
     }
     let text = case::rewrite(&case.source.text, "effects", &recommended.effects)
         .ok_or_else(|| Error::Usage(format!("{} is not a JSON object", path.display())))?;

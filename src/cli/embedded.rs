@@ -42,11 +42,8 @@ pub struct EmbeddedAnswer {
 /// Those of the command; [`Error::Usage`] if there is no such command.
 pub fn answer<I: IntoIterator<Item = OsString>>(words: I, stop: &Arc<AtomicBool>) -> Result<EmbeddedAnswer> {
     let all: Vec<OsString> = std::iter::once("slcbeam".into()).chain(words).collect();
-    let arguments = Arguments::try_parse_from(&all).map_err(|error| {
-        let words = error.render().to_string();
-        let own = || Error::Usage(words.trim().trim_start_matches("error: ").to_owned());
-        uncertain::elsewhere(&all, &error).unwrap_or_else(own)
-    })?;
+    let arguments = Arguments::try_parse_from(&all)
+        .map_err(|error| uncertain::elsewhere(&all, &error).unwrap_or_else(|| usage_error(&error)))?;
     let asked = Asked {
         stop: Arc::clone(stop),
         answer: EmbeddedAnswer::default(),
@@ -61,6 +58,12 @@ pub fn answer<I: IntoIterator<Item = OsString>>(words: I, stop: &Arc<AtomicBool>
         interrupted: request.was_seen(),
         ..answer
     })
+}
+
+/// Error of words that are no command.
+pub(super) fn usage_error(answer: &clap::Error) -> Error {
+    let words = answer.render().to_string();
+    Error::Usage(words.trim().trim_start_matches("error: ").to_owned())
 }
 
 /// Flag of the calling program; none on the command line.

@@ -8,7 +8,7 @@ use super::uncertain::{self, Uncertain};
 use super::{interrupt, progress_line, resources, terminal};
 use crate::case::parameter::Parameter;
 use crate::case::{Case, inherited};
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, usage};
 use crate::output::equilibrium as files;
 use crate::output::kind::FolderKind;
 use crate::output::report;
@@ -37,7 +37,7 @@ pub fn equilibrium(asked: &EquilibriumArguments) -> Result<ExitCode> {
         let what = "--uncertain applies to the equilibrium under the loads at the end of the run: it cannot be \
                     combined with --at, --via, --load-factor, --keep-branch or --accuracy. For the loads of another \
                     instant, use --set /time/end_s=SECONDS";
-        return Err(Error::Usage(what.into()));
+        return usage(what);
     }
     let uncertain = Uncertain::new(
         &asked.uncertain,
@@ -51,9 +51,7 @@ pub fn equilibrium(asked: &EquilibriumArguments) -> Result<ExitCode> {
     let begin = Instant::now();
     let accuracy = asked.accuracy.map(progress_line::accuracy).transpose()?;
     let mut of = |case: &Case| refine::numbers::of_equilibrium(case, &options);
-    let found = accuracy
-        .map(|accuracy| refine::refine(case, accuracy, false, &mut of))
-        .transpose()?;
+    let found = refine::if_asked(case, accuracy, false, &mut of)?;
     let case = found.as_ref().map_or(case, |(chosen, _)| chosen);
     let accuracy = found.as_ref().map(|(_, accuracy)| accuracy);
     let bar = progress_line::line(asked.result.quiet);
@@ -100,7 +98,7 @@ pub fn equilibrium(asked: &EquilibriumArguments) -> Result<ExitCode> {
     };
     let (mut uncertainty, mut written) = (None, Ok(()));
     if !path.states.is_empty() {
-        written = files::write(&mut folder, &found).map(|_| ());
+        written = files::write(&mut folder, &found);
         if path.fault.is_none() {
             uncertainty = uncertain::compute(uncertain.as_ref(), Some(&folder))?;
             found.bands = uncertain::bands(uncertainty.as_ref());
@@ -129,12 +127,10 @@ pub fn equilibrium(asked: &EquilibriumArguments) -> Result<ExitCode> {
 
 fn options(asked: &EquilibriumArguments, case: &Case, at_s: f64) -> Result<EquilibriumOptions> {
     if !(asked.load_factor.is_finite() && asked.load_factor != 0.0 && at_s.is_finite()) {
-        return Err(Error::Usage(
-            "--load-factor must be a number other than 0, and --at a number of seconds".into(),
-        ));
+        return usage("--load-factor must be a number other than 0, and --at a number of seconds");
     }
     if asked.points == 0 {
-        return Err(Error::Usage("--points must be at least 1".into()));
+        return usage("--points must be at least 1");
     }
     Ok(EquilibriumOptions {
         at_s,

@@ -4,7 +4,7 @@ use std::process::ExitCode;
 
 use super::arguments::{FitArguments, FittedThrough};
 use super::{interrupt, journal, progress_line, resources, sweep};
-use crate::error::{Error, Result};
+use crate::error::{Result, usage};
 use crate::output::fit as files;
 use crate::output::kind::FolderKind;
 use crate::output::numbers::{counted, significant};
@@ -54,8 +54,7 @@ pub fn fit(asked: &FitArguments) -> Result<ExitCode> {
     let written = written.and_then(|()| report::write(folder.dir(), None).map(|_| ()));
     let written = journal::end(&problem.evaluations, &folder, found.fit.interrupted, written);
     let (text, words) = (|| results::text(&found.fit), || files::describe(&found.fit));
-    super::print_result(asked.json, folder.dir(), written, text, words)?;
-    Ok(ExitCode::SUCCESS)
+    super::print_result(asked.json, folder.dir(), written, text, words)
 }
 
 fn wanted(asked: &FitArguments) -> Result<FitRequest> {
@@ -67,19 +66,19 @@ fn wanted(asked: &FitArguments) -> Result<FitRequest> {
     match asked.command {
         Some(FittedThrough::Equilibrium) if drives.is_empty() => {
             let what = "--command equilibrium needs --drive COLUMN=POINTER: the number of the case that every row sets";
-            return Err(Error::Usage(what.into()));
+            return usage(what);
         }
         Some(FittedThrough::Run) if !drives.is_empty() => {
             let what = "--drive: rows of a run are instants of one case; use --drive with --command equilibrium only";
-            return Err(Error::Usage(what.into()));
+            return usage(what);
         }
         Some(FittedThrough::Response) if asked.input.is_none() => {
             let what =
                 "--command response needs --input POINTER: the signal of the case over which outputs were measured";
-            return Err(Error::Usage(what.into()));
+            return usage(what);
         }
         Some(FittedThrough::Run | FittedThrough::Equilibrium) if asked.input.is_some() => {
-            return Err(Error::Usage("--input is an option of --command response only".into()));
+            return usage("--input is an option of --command response only");
         }
         _ => {}
     }
@@ -110,8 +109,8 @@ fn noise(text: &str) -> Result<(String, f64)> {
         .map(|(name, sigma)| (name.trim(), sigma.trim().parse::<f64>()));
     match parts {
         Some((name, Ok(sigma))) if !name.is_empty() => Ok((name.into(), sigma)),
-        _ => Err(Error::Usage(format!(
+        _ => usage(format!(
             "--noise '{text}': expected a column and a standard deviation above 0, such as angle_deg=0.2"
-        ))),
+        )),
     }
 }

@@ -6,7 +6,7 @@ use super::arguments::FloquetArguments;
 use super::uncertain::{self, Uncertain};
 use super::{interrupt, journal, progress_line, resources};
 use crate::case::Case;
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, usage};
 use crate::output::columns::warnings;
 use crate::output::floquet as files;
 use crate::output::kind::FolderKind;
@@ -32,11 +32,10 @@ pub fn floquet(asked: &FloquetArguments) -> Result<ExitCode> {
     let case = &resources::load(&asked.case)?;
     scene::system(case)?;
     match &asked.map.map {
-        Some(_) if !asked.uncertain.uncertain.is_empty() => Err(Error::Usage(
+        Some(_) if !asked.uncertain.uncertain.is_empty() => usage(
             "--uncertain applies to one cycle, not to a --map. For a point of the map, use slcbeam floquet CASE --set \
-             .. --uncertain .."
-                .into(),
-        )),
+             .. --uncertain ..",
+        ),
         Some(parameters) => map(asked, case, parameters),
         None => one(asked, case),
     }
@@ -44,13 +43,13 @@ pub fn floquet(asked: &FloquetArguments) -> Result<ExitCode> {
 
 fn one(asked: &FloquetArguments, case: &Case) -> Result<ExitCode> {
     if asked.count == 0 {
-        return Err(Error::Usage("--count 0: expected at least 1".into()));
+        return usage("--count 0: expected at least 1");
     }
     let accuracy = asked.accuracy.map(progress_line::accuracy).transpose()?;
     if (accuracy.is_some() || asked.period.is_some()) && !asked.uncertain.uncertain.is_empty() {
         let what = "--uncertain cannot be combined with --accuracy or --period. After a run with --accuracy, \
                     floquet.json contains its mesh and tolerance";
-        return Err(Error::Usage(what.into()));
+        return usage(what);
     }
     let uncertain = Uncertain::new(
         &asked.uncertain,
@@ -62,9 +61,7 @@ fn one(asked: &FloquetArguments, case: &Case) -> Result<ExitCode> {
     let mut folder = asked.result.place.claim(case, FolderKind::Floquet)?;
     let stop = asked.result.wall.stop();
     let mut of = |case: &Case| refine::numbers::of_multipliers(case, asked.period, asked.count, &stop);
-    let refined = accuracy
-        .map(|accuracy| refine::refine(case, accuracy, true, &mut of))
-        .transpose();
+    let refined = refine::if_asked(case, accuracy, true, &mut of);
     let refined = interrupt::before_a_cycle(refined, &stop)?;
     let case = refined.as_ref().map_or(case, |(chosen, _)| chosen);
     let scene = PeriodicScene::new(case, asked.period)?.heeding(&stop);
@@ -98,7 +95,7 @@ fn one(asked: &FloquetArguments, case: &Case) -> Result<ExitCode> {
         accuracy,
         meshes,
     };
-    let written = files::write(&mut folder, &found).map(|_| ());
+    let written = files::write(&mut folder, &found);
     let uncertainty = uncertain::compute(uncertain.as_ref(), Some(&folder))?;
     found.bands = uncertain::bands(uncertainty.as_ref());
     let text = || results::text(&found);
@@ -110,15 +107,12 @@ fn one(asked: &FloquetArguments, case: &Case) -> Result<ExitCode> {
         ))
         .and(report::complete(&folder, case));
     let words = || files::describe(&found) + &uncertain::below(uncertainty.as_ref());
-    super::print_result(asked.json, folder.dir(), written, text, words)?;
-    Ok(ExitCode::SUCCESS)
+    super::print_result(asked.json, folder.dir(), written, text, words)
 }
 
 fn map(asked: &FloquetArguments, case: &Case, parameters: &str) -> Result<ExitCode> {
     if parameters != "frequency,amplitude" {
-        return Err(Error::Usage(format!(
-            "--map {parameters}: a map is drawn over frequency,amplitude"
-        )));
+        return usage(format!("--map {parameters}: a map is drawn over frequency,amplitude"));
     }
     let plan = plan(asked, tongue::shaking(case)?)?;
     let mut folder = asked.result.place.claim(case, FolderKind::Map)?;
@@ -133,12 +127,10 @@ fn map(asked: &FloquetArguments, case: &Case, parameters: &str) -> Result<ExitCo
     bar.finish_and_clear();
     let stopped = stop.raised();
     let found = journal::outcome(found, &folder, stopped)?;
-    let written = files::write_map(&mut folder, &found).map(|_| ());
-    let written = written.and(report::complete(&folder, case));
+    let written = files::write_map(&mut folder, &found).and(report::complete(&folder, case));
     let written = journal::end(&evaluations, &folder, stopped, written);
     let words = || files::map_words(&found) + &warnings(&found.warnings);
-    super::print_result(asked.json, folder.dir(), written, || results::text(&found), words)?;
-    Ok(ExitCode::SUCCESS)
+    super::print_result(asked.json, folder.dir(), written, || results::text(&found), words)
 }
 
 /// Plan of the map, around the case's own frequency [Hz] and amplitude [m].
@@ -149,10 +141,10 @@ fn plan(asked: &FloquetArguments, own: (f64, f64)) -> Result<MapRange> {
     };
     let counts = both(&asked.map.points).and_then(|(a, b)| Some((a.parse::<usize>().ok()?, b.parse::<usize>().ok()?)));
     let Some((columns, rows)) = counts.filter(|(a, b)| *a > 0 && *b > 0 && a.saturating_mul(*b) <= MOST_POINTS) else {
-        return Err(Error::Usage(format!(
+        return usage(format!(
             "--points {}: two counts such as 21,12, at most {MOST_POINTS} points in all",
             asked.map.points
-        )));
+        ));
     };
     let (frequency, amplitude) = match &asked.map.range {
         None => ((0.6 * own.0, 1.6 * own.0), (1.5 * own.1 / rows as f64, 1.5 * own.1)),
@@ -165,7 +157,7 @@ fn plan(asked: &FloquetArguments, own: (f64, f64)) -> Result<MapRange> {
             })?,
     };
     if let Some(wrong) = asked.map.permeability.iter().find(|f| !(f.is_finite() && **f > 0.0)) {
-        return Err(Error::Usage(format!("--permeability {wrong}: factors > 0")));
+        return usage(format!("--permeability {wrong}: factors > 0"));
     }
     Ok(MapRange {
         frequencies_hz: progress_line::spread(frequency.0, frequency.1, columns, false),

@@ -5,7 +5,7 @@ use slcbeam_section::finite::inflation::{Growth, Inflation};
 
 use super::coefficients::CoefficientsArguments;
 use crate::case::section::SectionFile;
-use crate::error::{Error, Result};
+use crate::error::{Result, usage};
 use crate::output::columns::table;
 use crate::output::numbers::significant;
 
@@ -24,8 +24,7 @@ pub fn pressure(text: &str) -> std::result::Result<f64, String> {
 pub fn follow(written: &SectionFile, asked: &CoefficientsArguments) -> Result<Option<Inflation>> {
     let pressures = &asked.inflate;
     if pressures.windows(2).any(|pair| pair[0] >= pair[1]) {
-        let what = "--inflate: pressures do not rise. The section is followed from rest. Give them in rising order";
-        return Err(Error::Usage(what.to_owned()));
+        return usage("--inflate: pressures do not rise. The section is followed from rest. Give them in rising order");
     }
     (!pressures.is_empty())
         .then(|| written.inflation(pressures))

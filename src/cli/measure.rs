@@ -67,10 +67,7 @@ pub fn measure(asked: &MeasureArguments) -> Result<ExitCode> {
         through_bladder: asked.through_bladder,
     };
     let found = fit(experiment, points, &case, options)?;
-    super::print(&match asked.json {
-        true => format!("{:#}\n", in_json(&found)),
-        false => in_words(&found),
-    })?;
+    super::answer(asked.json, || in_json(&found), || in_words(&found))?;
     if let Some(path) = &asked.plot
         && let Some(text) = picture(&found)
     {

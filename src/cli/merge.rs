@@ -7,7 +7,7 @@ use std::process::ExitCode;
 use super::arguments::MergeArguments;
 use super::terminal;
 use crate::case::{self, CaseText};
-use crate::error::{Error, Result};
+use crate::error::{Result, usage};
 use crate::output::folder::{CASE, ResultFolder, text_of};
 use crate::output::kind::FolderKind;
 use crate::output::report;
@@ -22,26 +22,26 @@ const INCOMPLETE: u8 = 5;
 pub fn merge(asked: &MergeArguments) -> Result<ExitCode> {
     let all = shards::read(&asked.parts)?;
     let Some(first) = all.first() else {
-        return Err(Error::Usage("no folders".into()));
+        return usage("no folders");
     };
     let plan = first.plan.whole();
     let dir = asked.place.folder(&plan.case, FolderKind::Designs);
     if let Some(part) = asked.parts.iter().find(|part| same(part, &dir)) {
-        return Err(Error::Usage(format!(
+        return usage(format!(
             "--out {}: {} is one of the shards, whose rows would be overwritten; name another folder",
             dir.display(),
             part.display()
-        )));
+        ));
     }
     let mut folder = ResultFolder::claim(&dir, FolderKind::Designs, asked.place.force)?;
     match files::plan(&folder)? {
         Some(there) if asked.place.force && plan.difference(&there).is_some() => start(&mut folder, asked, &plan)?,
         Some(there) => {
             if let Some(why) = plan.difference(&there) {
-                return Err(Error::Usage(format!(
+                return usage(format!(
                     "{} contains another sweep: {why}; name another folder with --out, or use this one with --force",
                     dir.display()
-                )));
+                ));
             }
         }
         None => start(&mut folder, asked, &plan)?,
@@ -56,13 +56,8 @@ pub fn merge(asked: &MergeArguments) -> Result<ExitCode> {
         true => Ok(()),
         false => report::write(&dir, None).map(|_| ()),
     });
-    super::print_result(
-        asked.json,
-        &dir,
-        written,
-        || results::text(&summary),
-        || text::describe(&summary, &survey).unwrap_or_default(),
-    )?;
+    let words = || text::describe(&summary, &survey).unwrap_or_default();
+    super::print_result(asked.json, &dir, written, || results::text(&summary), words)?;
     let lost = shards::lost(&all, &plan, &survey, &dir);
     for one in &lost {
         let what = match (one.shard, &one.dir) {

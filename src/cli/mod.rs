@@ -52,6 +52,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Instant;
 
 use clap::Parser;
+use serde_json::Value;
 
 use crate::error::{Error, Result, visible};
 use crate::output::machine;
@@ -98,13 +99,18 @@ pub fn main_of(words: impl IntoIterator<Item = OsString>) -> ExitCode {
         return ExitCode::from(error.exit_code());
     }
     let words: Vec<OsString> = words.into_iter().collect();
+    let json = words.iter().skip(1).any(|word| word == "--json");
+    let in_json = |error: &Error| {
+        // a second document after an answer would make the output unreadable
+        if json && !ANSWERED.load(Ordering::Relaxed) {
+            let _ = print(&format!("{:#}\n", terminal::json(error)));
+        }
+    };
     let arguments = match Arguments::try_parse_from(&words) {
         Ok(arguments) => arguments,
         Err(answer) if let Some(error) = arguments::uncertain::elsewhere(&words, &answer) => {
             terminal::report(&error);
-            if words.iter().any(|word| word == "--json") {
-                let _ = print(&format!("{:#}\n", terminal::json(&error)));
-            }
+            in_json(&error);
             return ExitCode::from(error.exit_code());
         }
         Err(answer) => {
@@ -113,11 +119,7 @@ pub fn main_of(words: impl IntoIterator<Item = OsString>) -> ExitCode {
             if !answer.use_stderr() {
                 return ExitCode::SUCCESS;
             }
-            if words.iter().skip(1).any(|argument| argument == "--json") {
-                let words = answer.render().to_string();
-                let error = Error::Usage(words.trim().trim_start_matches("error: ").to_owned());
-                let _ = print(&format!("{:#}\n", terminal::json(&error)));
-            }
+            in_json(&embedded::usage_error(&answer));
             return ExitCode::from(2);
         }
     };
@@ -126,10 +128,7 @@ pub fn main_of(words: impl IntoIterator<Item = OsString>) -> ExitCode {
         Ok(code) => interrupt::ended(Ok(code)),
         Err(error) => {
             terminal::report(&error);
-            // a second document after an answer would make the output unreadable
-            if arguments.command.json() && !ANSWERED.load(Ordering::Relaxed) {
-                let _ = print(&format!("{:#}\n", terminal::json(&error)));
-            }
+            in_json(&error);
             interrupt::ended(Err(&error))
         }
     }
@@ -194,6 +193,12 @@ fn print(text: &str) -> Result<()> {
     print_painted(&visible(text))
 }
 
+/// Prints the answer of a command without a result folder, as JSON or as text.
+fn answer(json: bool, value: impl FnOnce() -> Value, text: impl FnOnce() -> String) -> Result<ExitCode> {
+    print(&if json { format!("{:#}\n", value()) } else { text() })?;
+    Ok(ExitCode::SUCCESS)
+}
+
 /// Prints a result as JSON, or as text with the folder of its files. Prints it even if its files could not be `written`.
 ///
 /// # Errors
@@ -204,13 +209,13 @@ fn print_result(
     written: Result<()>,
     text: impl FnOnce() -> String,
     describe: impl FnOnce() -> String,
-) -> Result<()> {
+) -> Result<ExitCode> {
     let printed = match json {
         true => print(&text()),
         false if written.is_ok() => print(&format!("{}\nfiles in {}\n", describe(), dir.display())),
         false => print(&format!("{}\n", describe())),
     };
-    written.and(printed)
+    written.and(printed).map(|()| ExitCode::SUCCESS)
 }
 
 /// [`print`] for text with the program's own colors, in which foreign control sequences are already visible.

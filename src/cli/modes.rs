@@ -8,7 +8,7 @@ use super::{progress_line, resources, terminal};
 use crate::case::parameter::Parameter;
 use crate::case::{Case, inherited};
 use crate::discrete::System;
-use crate::error::{Error, Result};
+use crate::error::{Result, usage};
 use crate::output::kind::FolderKind;
 use crate::output::modes::{self as files, Report};
 use crate::output::report;
@@ -24,11 +24,10 @@ use crate::study::refine;
 pub fn modes(asked: &ModesArguments) -> Result<ExitCode> {
     if asked.map.map.is_some() {
         if !asked.uncertain.uncertain.is_empty() {
-            return Err(Error::Usage(
+            return usage(
                 "--uncertain applies to single modes, not to a --map. For a point of the map, use slcbeam floquet \
-                 CASE --set .. --uncertain .."
-                    .into(),
-            ));
+                 CASE --set .. --uncertain ..",
+            );
         }
         return super::floquet::floquet(&FloquetArguments {
             case: asked.case.clone(),
@@ -49,7 +48,7 @@ pub fn modes(asked: &ModesArguments) -> Result<ExitCode> {
     if !(own || asked.uncertain.uncertain.is_empty()) {
         let what = "--uncertain applies to the lowest oscillating modes about the start: it cannot be combined with \
                     --at, --near or --accuracy";
-        return Err(Error::Usage(what.into()));
+        return usage(what);
     }
     let uncertain = Uncertain::new(
         &asked.uncertain,
@@ -65,9 +64,7 @@ pub fn modes(asked: &ModesArguments) -> Result<ExitCode> {
     }
     let accuracy = asked.accuracy.map(progress_line::accuracy).transpose()?;
     let mut of = |case: &Case| refine::numbers::of_modes(case, asked.at, &plan);
-    let refined = accuracy
-        .map(|accuracy| refine::refine(&case, accuracy, false, &mut of))
-        .transpose()?;
+    let refined = refine::if_asked(&case, accuracy, false, &mut of)?;
     let (case, system) = match &refined {
         Some((chosen, _)) => (chosen, System::new(chosen)?),
         None => (&case, system),
@@ -98,7 +95,7 @@ pub fn modes(asked: &ModesArguments) -> Result<ExitCode> {
         known: &known,
         bands: &Bands::new(),
     };
-    let written = files::write(&mut folder, &report).map(|_| ());
+    let written = files::write(&mut folder, &report);
     let uncertainty = uncertain::compute(uncertain.as_ref(), Some(&folder))?;
     let bands = &uncertain::bands(uncertainty.as_ref());
     let report = Report { bands, ..report };
@@ -110,15 +107,13 @@ pub fn modes(asked: &ModesArguments) -> Result<ExitCode> {
         let spread = uncertain::below(uncertainty.as_ref());
         format!("{}\n{}\n{spread}", files::table(&report), report.sentences())
     };
-    super::print_result(asked.json, folder.dir(), written, json, words)?;
-    Ok(ExitCode::SUCCESS)
+    super::print_result(asked.json, folder.dir(), written, json, words)
 }
 
 /// Largest number of modes: a longer spectrum answers no question, and its shapes fill the memory.
 const MOST: usize = 1000;
 
 fn plan(asked: &ModesArguments) -> Result<ModeOptions> {
-    let usage = |what: String| Err(Error::Usage(what));
     if !(1..=MOST).contains(&asked.count) {
         return usage(format!("--count {}: expected from 1 to {MOST} modes", asked.count));
     }

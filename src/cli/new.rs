@@ -7,7 +7,7 @@ use clap::{Args, ValueEnum};
 use serde_json::json;
 
 use crate::case::{rewrite, schema_json};
-use crate::error::{Error, Result};
+use crate::error::{Result, usage};
 use crate::output::folder::replace;
 
 /// Name of the schema file beside a case.
@@ -111,9 +111,9 @@ pub fn new(asked: &NewArguments) -> Result<ExitCode> {
         .collect();
     let of = asked.of.unwrap_or(SectionKind::Honeycomb);
     if asked.of.is_some() && asked.kind != StarterCase::Section {
-        return Err(Error::Usage(format!(
+        return usage(format!(
             "--of chooses a section, for `new section` only: write slcbeam new section --of NAME, not new {named}"
-        )));
+        ));
     }
     let text = asked.kind.text(of);
     let keys = [("name", name.as_str()), ("$schema", SCHEMA)];
@@ -122,10 +122,10 @@ pub fn new(asked: &NewArguments) -> Result<ExitCode> {
         .try_fold(text.to_owned(), |text, (key, value)| rewrite(&text, key, &value.into()))
         .unwrap_or_default();
     if path.exists() && !asked.force {
-        return Err(Error::Usage(format!(
+        return usage(format!(
             "{} exists and is not overwritten; name another file, slcbeam new {named} FILE, or use --force",
             path.display()
-        )));
+        ));
     }
     replace(&path, &text)?;
     let quoted = if path.to_string_lossy().contains(' ') {
@@ -135,13 +135,11 @@ pub fn new(asked: &NewArguments) -> Result<ExitCode> {
     };
     let schema = path.with_file_name(SCHEMA);
     replace(&schema, format!("{:#}\n", schema_json()))?;
-    super::print(&if asked.json {
-        format!("{:#}\n", json!({"case": path, "schema": schema}))
-    } else {
+    let text = || {
         format!(
             "wrote {quoted}, a starting case with remarks, and {}, by which editors explain its keys\nnext: slcbeam check {quoted}; slcbeam run {quoted}\n",
             schema.display()
         )
-    })?;
-    Ok(ExitCode::SUCCESS)
+    };
+    super::answer(asked.json, || json!({"case": path, "schema": schema}), text)
 }

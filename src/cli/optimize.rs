@@ -5,7 +5,7 @@ use std::process::ExitCode;
 use super::arguments::OptimizeArguments;
 use super::{interrupt, journal, progress_line, resources, sweep};
 use crate::case::Case;
-use crate::error::{Error, Result};
+use crate::error::{Result, usage};
 use crate::output::kind::FolderKind;
 use crate::output::numbers::significant;
 use crate::output::optimum as files;
@@ -81,7 +81,7 @@ fn alternatives(asked: &OptimizeArguments, case: &Case, wanted: &OptimizationReq
     if wanted.spans.is_empty() && sets.is_empty() {
         let what = "no number to vary: give --vary POINTER=LOW:HIGH, such as /network/permeability_factor=0.01:1, or \
                     --choose, --crossovers";
-        return Err(Error::Usage(what.into()));
+        return usage(what);
     }
     let mut all = combinations(sets)?;
     if all.is_empty() {
@@ -121,9 +121,9 @@ fn apart(one: &Alternative, wanted: &OptimizationRequest) -> Result<()> {
     let within = |a: &str, b: &str| a == b || a.strip_prefix(b).is_some_and(|rest| rest.starts_with('/'));
     for (k, a) in chosen.iter().enumerate() {
         if let Some(b) = chosen[..k].iter().chain(&sought).find(|b| within(a, b) || within(b, a)) {
-            return Err(Error::Usage(format!(
+            return usage(format!(
                 "{a} and {b}: --vary, --choose and --crossovers must be of different parts of the case"
-            )));
+            ));
         }
     }
     Ok(())

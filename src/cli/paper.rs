@@ -20,11 +20,8 @@ const HEADINGS: &str = "nu | fillet [mm] | centre [mm] | f_e | f_i | a_p [m^2/Pa
 /// Computes and prints the coefficients.
 pub fn paper(in_json: bool) -> Result<ExitCode> {
     let table = paper_table(&RATIOS, &FILLETS_M, &CENTERS_M).map_err(|error| Error::Usage(error.to_string()))?;
-    super::print(&match in_json {
-        true => format!("{:#}\n", json!({"printed": PRINTED, "computed": table})),
-        false => in_words(&table),
-    })?;
-    Ok(ExitCode::SUCCESS)
+    let value = || json!({"printed": PRINTED, "computed": table});
+    super::answer(in_json, value, || in_words(&table))
 }
 
 fn in_words(table: &PaperTable) -> String {

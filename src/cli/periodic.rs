@@ -7,7 +7,7 @@ use super::uncertain::{self, Uncertain};
 use super::{interrupt, journal, progress_line, resources, terminal};
 use crate::case::parameter::Parameter;
 use crate::case::{Case, amounts};
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, usage};
 use crate::output::Labels;
 use crate::output::columns::warnings;
 use crate::output::floquet as stability;
@@ -38,12 +38,11 @@ const MOST_VALUES: usize = 10_000;
 /// Finds the cycle or the cycles, writes the folder, prints the text.
 pub fn periodic(asked: &PeriodicArguments) -> Result<ExitCode> {
     match &asked.sweep {
-        Some(_) if !asked.uncertain.uncertain.is_empty() => Err(Error::Usage(
+        Some(_) if !asked.uncertain.uncertain.is_empty() => usage(
             "--uncertain applies to one cycle, not to --sweep. For samples of cycles, use slcbeam sweep CASE \
-             --command periodic --vary POINTER=normal:MEAN:SD --design sobol:64"
-                .into(),
-        )),
-        Some(_) if asked.periods != 1 => Err(Error::Usage("--periods applies to one cycle, not to --sweep".into())),
+             --command periodic --vary POINTER=normal:MEAN:SD --design sobol:64",
+        ),
+        Some(_) if asked.periods != 1 => usage("--periods applies to one cycle, not to --sweep"),
         Some(text) => sweep(asked, text),
         None => one(asked),
     }
@@ -58,8 +57,7 @@ fn load(asked: &PeriodicArguments, more: Option<String>) -> Result<Case> {
 fn one(asked: &PeriodicArguments) -> Result<ExitCode> {
     let case = load(asked, None)?;
     if !(asked.periods == 1 && asked.accuracy.is_none() || asked.uncertain.uncertain.is_empty()) {
-        let what = "--uncertain cannot be combined with --periods or --accuracy";
-        return Err(Error::Usage(what.into()));
+        return usage("--uncertain cannot be combined with --periods or --accuracy");
     }
     let uncertain = Uncertain::new(
         &asked.uncertain,
@@ -78,13 +76,8 @@ fn one(asked: &PeriodicArguments) -> Result<ExitCode> {
     let bar = progress_line::line(asked.result.quiet);
     bar.set_message("searching for the cycle");
     let accuracy = asked.accuracy.map(progress_line::accuracy).transpose()?;
-    let asked_for = accuracy
-        .map(|accuracy| {
-            refine::refine(&case, accuracy, true, &mut |case| {
-                refine::numbers::of_cycle(case, asked.periods, &stop)
-            })
-        })
-        .transpose();
+    let mut of = |case: &Case| refine::numbers::of_cycle(case, asked.periods, &stop);
+    let asked_for = refine::if_asked(&case, accuracy, true, &mut of);
     let asked_for = interrupt::before_a_cycle(asked_for, &stop)?;
     let case = asked_for.as_ref().map_or(&case, |(chosen, _)| chosen);
     let found = subharmonic::find_until(case, asked.periods, &stop);
@@ -175,7 +168,7 @@ fn sweep(asked: &PeriodicArguments, text: &str) -> Result<ExitCode> {
         .map(|value| Ok((value, load(asked, Some(format!("{pointer}={value}")))?)))
         .collect::<Result<Vec<_>>>()?;
     let Some((_, first)) = cases.first() else {
-        return Err(Error::Usage(format!("--sweep {text}: no values")));
+        return usage(format!("--sweep {text}: no values"));
     };
     let mut folder = asked.result.place.claim(first, FolderKind::Sweep)?;
     let first = first.clone();
@@ -204,8 +197,7 @@ fn sweep(asked: &PeriodicArguments, text: &str) -> Result<ExitCode> {
     bar.finish_and_clear();
     let stopped = stop.raised();
     let found = journal::outcome(found, &folder, stopped)?;
-    let written = files::write(&mut folder, &found).map(|_| ());
-    let written = written.and(report::complete(&folder, &first));
+    let written = files::write(&mut folder, &found).and(report::complete(&folder, &first));
     let written = journal::end(&evaluations, &folder, stopped, written);
     let words = || files::describe(&found) + &warnings(&found.warnings);
     super::print_result(asked.json, folder.dir(), written, || results::text(&found), words)?;
@@ -222,7 +214,7 @@ fn parse(text: &str) -> Result<(String, Vec<f64>, bool)> {
     };
     let (pointer, rest) = text.rsplit_once('=').ok_or_else(wrong)?;
     if let Some(said) = amounts::rewritten("--sweep", pointer, rest) {
-        return Err(Error::Usage(format!("--sweep '{text}': {said}")));
+        return usage(format!("--sweep '{text}': {said}"));
     }
     let (rest, logarithmic) = rest.strip_suffix(":log").map_or((rest, false), |rest| (rest, true));
     let (range, count) = rest.rsplit_once(':').ok_or_else(wrong)?;

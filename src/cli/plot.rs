@@ -8,7 +8,7 @@ use clap::{Args, ValueEnum};
 use serde_json::json;
 
 use super::progress_line::output_path;
-use crate::error::{Error, Result};
+use crate::error::{Result, usage};
 use crate::output::columns;
 use crate::output::folder::{name_of, replace_picture};
 use crate::output::plot::pdf::PdfFont;
@@ -114,15 +114,13 @@ pub fn plot(asked: &PlotArguments) -> Result<ExitCode> {
     ] {
         if let Some(value) = value.filter(|value| !limits.contains(value)) {
             let (low, high) = limits.into_inner();
-            return Err(Error::Usage(format!("{name} {value}: expected {low} to {high}")));
+            return usage(format!("{name} {value}: expected {low} to {high}"));
         }
     }
     if let (Some(from), Some(to)) = (asked.from, asked.to)
         && from >= to
     {
-        return Err(Error::Usage(format!(
-            "--from {from} --to {to}: --from must be below --to"
-        )));
+        return usage(format!("--from {from} --to {to}: --from must be below --to"));
     }
     let request = PictureRequest {
         quantities: asked.quantities.clone(),
@@ -147,8 +145,7 @@ pub fn plot(asked: &PlotArguments) -> Result<ExitCode> {
         Format::Pdf => drawing.pdf(&font)?,
     };
     replace_picture(&path, &bytes, asked.force)?;
-    answer(asked, &path, bytes.len(), &panels, drawing.size_mm())?;
-    Ok(ExitCode::SUCCESS)
+    answer(asked, &path, bytes.len(), &panels, drawing.size_mm())
 }
 
 /// Style with the requested font, and the font of a PDF.
@@ -166,10 +163,10 @@ fn format_of(path: &Path) -> Result<Format> {
     match ending.as_deref() {
         Some("svg") => Ok(Format::Svg),
         Some("pdf") => Ok(Format::Pdf),
-        _ => Err(Error::Usage(format!(
+        _ => usage(format!(
             "--out {}: expected a file that ends in .svg or .pdf",
             path.display()
-        ))),
+        )),
     }
 }
 
@@ -199,44 +196,44 @@ fn default_path(asked: &PlotArguments) -> PathBuf {
     PathBuf::from(format!("{name}.svg"))
 }
 
-fn answer(asked: &PlotArguments, path: &Path, bytes: usize, panels: &[QuantityPanel], size: [f64; 2]) -> Result<()> {
+fn answer(
+    asked: &PlotArguments,
+    path: &Path,
+    bytes: usize,
+    panels: &[QuantityPanel],
+    size: [f64; 2],
+) -> Result<ExitCode> {
     let [width, height] = size.map(|x| (10.0 * x).round() / 10.0);
-    if asked.json {
+    let value = || {
         let drawn = panels.iter().map(|panel| {
             let ((x, x_unit), (y, y_unit)) = (&panel.x, &panel.y);
             let curves: Vec<_> = panel.curves.iter().map(|curve| &curve.label).collect();
             json!({"x": x, "x_unit": x_unit, "y": y, "y_unit": y_unit, "curves": curves})
         });
-        let all = json!({"path": path, "bytes": bytes, "width_mm": width, "height_mm": height, "panels": drawn.collect::<Vec<_>>()});
-        return super::print(&format!("{all:#}\n"));
-    }
-    let named = |panel: &QuantityPanel| match panel.y.0.as_str() {
-        "" => panel
-            .curves
-            .iter()
-            .map(|curve| curve.label.as_str())
-            .collect::<Vec<_>>()
-            .join(", "),
-        name => name.to_string(),
+        json!({"path": path, "bytes": bytes, "width_mm": width, "height_mm": height, "panels": drawn.collect::<Vec<_>>()})
     };
-    let drawn: Vec<String> = panels.iter().map(named).collect();
-    let over = panels.first().map_or("", |panel| panel.x.0.as_str());
-    let mut text = format!(
-        "{}: {} over {over}, {width} x {height} mm\n",
-        path.display(),
-        drawn.join("; ")
-    );
-    if asked.quantities.is_empty() && asked.at.is_empty() {
-        let dir = asked.results.first().map_or_else(String::new, |dir| shell_word(dir));
-        text += &format!("other quantities: slcbeam plot {dir} --list\n");
-    }
-    super::print(&text)
+    let text = || {
+        let named = |panel: &QuantityPanel| match panel.y.0.as_str() {
+            "" => columns::joined(panel.curves.iter().map(|curve| curve.label.clone()), ", "),
+            name => name.to_string(),
+        };
+        let drawn = columns::joined(panels.iter().map(named), "; ");
+        let over = panels.first().map_or("", |panel| panel.x.0.as_str());
+        let text = format!("{}: {drawn} over {over}, {width} x {height} mm\n", path.display());
+        match asked.results.first() {
+            Some(dir) if asked.quantities.is_empty() && asked.at.is_empty() => {
+                format!("{text}other quantities: slcbeam plot {} --list\n", shell_word(dir))
+            }
+            _ => text,
+        }
+    };
+    super::answer(asked.json, value, text)
 }
 
 /// Prints names, units and meanings of the quantities of the first result.
 fn list(asked: &PlotArguments) -> Result<ExitCode> {
     let Some(dir) = asked.results.first() else {
-        return Err(Error::Usage("expected a result folder".into()));
+        return usage("expected a result folder");
     };
     let rows: Vec<[String; 3]> = match asked.at.is_empty() {
         false => profile::names(dir)?,
@@ -249,14 +246,7 @@ fn list(asked: &PlotArguments) -> Result<ExitCode> {
             table.numbers().map(row).collect()
         }
     };
-    super::print(&match asked.json {
-        true => {
-            let all = rows
-                .iter()
-                .map(|[name, unit, words]| json!({"quantity": name, "unit": unit, "name": words}));
-            format!("{:#}\n", all.collect::<serde_json::Value>())
-        }
-        false => columns::table("<quantity | <unit | <name", &rows),
-    })?;
-    Ok(ExitCode::SUCCESS)
+    let value = |[name, unit, words]: &[String; 3]| json!({"quantity": name, "unit": unit, "name": words});
+    let text = || columns::table("<quantity | <unit | <name", &rows);
+    super::answer(asked.json, || rows.iter().map(value).collect(), text)
 }

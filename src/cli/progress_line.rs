@@ -7,7 +7,7 @@ use clap::builder::{PathBufValueParser, TypedValueParser};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressFinish, ProgressStyle};
 
 use crate::case::amounts::{self, UnitContext};
-use crate::error::{Error, Result};
+use crate::error::{Result, usage};
 use crate::study::refine;
 
 /// Template of a moving line.
@@ -142,7 +142,7 @@ pub fn accuracy(asked: f64) -> Result<f64> {
     if refine::sensible(asked) {
         return Ok(asked);
     }
-    Err(Error::Usage(format!(
+    usage(format!(
         "--accuracy {asked}: expected a relative error from 1e-6 to 0.5, such as 0.01 for one per cent"
-    )))
+    ))
 }

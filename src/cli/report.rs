@@ -27,10 +27,6 @@ pub struct ReportArguments {
 pub fn report(asked: &ReportArguments) -> Result<ExitCode> {
     let page = report::write(&asked.dir, asked.out.as_deref())?;
     let path = page.path.display().to_string();
-    super::print(&if asked.json {
-        format!("{:#}\n", json!({"report": path, "bytes": page.bytes}))
-    } else {
-        format!("{path}: {} kB; open it in a browser\n", page.bytes.div_ceil(1000))
-    })?;
-    Ok(ExitCode::SUCCESS)
+    let text = || format!("{path}: {} kB; open it in a browser\n", page.bytes.div_ceil(1000));
+    super::answer(asked.json, || json!({"report": path, "bytes": page.bytes}), text)
 }

@@ -11,7 +11,7 @@ use crate::case::parameter::Parameter;
 use crate::case::{Case, inherited};
 use crate::discrete::ledger::EnergyRate;
 use crate::error::numbers::{error_percent, significant};
-use crate::error::{Code, Error, Result};
+use crate::error::{Code, Result, usage};
 use crate::output::kind::FolderKind;
 use crate::output::report;
 use crate::output::response as files;
@@ -113,19 +113,16 @@ pub fn response(asked: &ResponseArguments) -> Result<ExitCode> {
     }
     let varied = inherited::varied(&case, asked.sensitivity.iter().map(String::as_str));
     answer.warnings.extend(varied);
-    let written = files::write(&mut folder, &answer).map(|_| ());
+    let written = files::write(&mut folder, &answer);
     let uncertainty = uncertain::compute(uncertain.as_ref(), Some(&folder))?;
     let written = written
         .and(uncertain::write(uncertainty.as_ref(), &folder, &[]))
         .and(report::complete(&folder, &case));
-    super::print_result(
-        asked.json,
-        folder.dir(),
-        written,
+    let (text, words) = (
         || results::text(&answer),
         || files::describe(&answer) + &uncertain::below(uncertainty.as_ref()),
-    )?;
-    Ok(ExitCode::SUCCESS)
+    );
+    super::print_result(asked.json, folder.dir(), written, text, words)
 }
 
 /// The request of `--uncertain`, whose figures are those of [`ResponseAnalysis`].
@@ -138,7 +135,7 @@ fn uncertain(
     if !asked.uncertain.uncertain.is_empty() && (asked.at.is_some() || asked.from == asked.to) {
         let what = "--uncertain applies to peaks about the start in a band: it cannot be combined with --at, or with one \
                     frequency as the band";
-        return Err(Error::Usage(what.into()));
+        return usage(what);
     }
     let what = AnalysisKind::Response(ResponseAnalysis {
         input: request.input.clone(),
@@ -152,14 +149,12 @@ fn uncertain(
 /// Checks first and last frequency [Hz], whose order is `ordered` if the first is `relation` the second, and the number of samples.
 pub fn check_band([from, to]: [f64; 2], points: usize, ordered: bool, relation: &str) -> Result<()> {
     if !(from > 0.0 && ordered && to.is_finite()) {
-        return Err(Error::Usage(format!(
+        return usage(format!(
             "--from {from} --to {to}: expected two frequencies [Hz], the first above 0 and {relation} the second"
-        )));
+        ));
     }
     if !(2..=MOST).contains(&points) {
-        return Err(Error::Usage(format!(
-            "--points {points}: expected 2 to {MOST} frequencies"
-        )));
+        return usage(format!("--points {points}: expected 2 to {MOST} frequencies"));
     }
     Ok(())
 }
@@ -180,9 +175,7 @@ pub fn each_frequency(frequencies: &[f64]) -> Result<Vec<f64>> {
     let mut all: Vec<f64> = vec![];
     for hz in frequencies {
         if !(*hz > 0.0 && hz.is_finite()) {
-            return Err(Error::Usage(format!(
-                "--frequency {hz}: expected a frequency above 0 Hz"
-            )));
+            return usage(format!("--frequency {hz}: expected a frequency above 0 Hz"));
         }
         if !all.contains(hz) {
             all.push(*hz);
@@ -206,7 +199,7 @@ fn request(asked: &ResponseArguments) -> Result<Request> {
 fn answer(case: &str, request: &Request, found: &BandResponse) -> Result<ResponseRecord> {
     let mut curves = found.curves.iter().map(curve);
     let Some(first) = curves.next() else {
-        return Err(Error::Usage("--output: expected at least one".into()));
+        return usage("--output: expected at least one");
     };
     let about = &found.response.about;
     let unknown = found.unknown.iter();

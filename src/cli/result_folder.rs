@@ -7,7 +7,7 @@ use clap::Args;
 
 use super::terminal;
 use crate::case::Case;
-use crate::error::{Error, Result};
+use crate::error::{Result, usage};
 use crate::output::folder::{CASE, RAW_FIELDS, REPORT, ResultFolder, TABLES, VTK, fault, other_origin, text_of};
 use crate::output::kind::FolderKind;
 
@@ -44,11 +44,11 @@ impl PlaceArguments {
     pub fn claim(&self, case: &Case, kind: FolderKind) -> Result<ResultFolder> {
         let dir = self.folder(&case.name, kind);
         if overwritten(&dir, case, kind) {
-            return Err(Error::Usage(format!(
+            return usage(format!(
                 "--out {}: the case itself, {}, would be overwritten; name another folder",
                 dir.display(),
                 case.source.path.display()
-            )));
+            ));
         }
         // the user knows the content of a folder that the user names; the default one has the name in the case, which copies of a file
         // share

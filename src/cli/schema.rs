@@ -17,6 +17,5 @@ pub struct SchemaArguments {
 
 /// Prints the JSON Schema of a case.
 pub fn schema() -> Result<ExitCode> {
-    super::print(&format!("{:#}\n", schema_json()))?;
-    Ok(ExitCode::SUCCESS)
+    super::answer(true, schema_json, String::new)
 }

@@ -4,7 +4,7 @@ use std::process::ExitCode;
 
 use super::arguments::SenseArguments;
 use super::{interrupt, progress_line, resources};
-use crate::error::{Error, Result};
+use crate::error::{Result, usage};
 use crate::output::folder::CASE;
 use crate::output::kind::FolderKind;
 use crate::output::{report, sense as files};
@@ -28,7 +28,7 @@ pub fn sense(asked: &SenseArguments) -> Result<ExitCode> {
     if question.noise_pa.is_some() && measured.as_ref().is_some_and(|one| one.deviations.is_some()) {
         let what = "--noise: the measurements contain columns with the standard deviation of each pressure; leave out \
                     one of the two";
-        return Err(Error::Usage(what.into()));
+        return usage(what);
     }
     let mut folder = asked.result.place.claim(case, FolderKind::Sense)?;
     let bar = progress_line::line(asked.result.quiet);
@@ -43,16 +43,9 @@ pub fn sense(asked: &SenseArguments) -> Result<ExitCode> {
     if let Some(measured) = &measured {
         found.left_alone.clone_from(&measured.left_alone);
     }
-    let written = files::write(&mut folder, &found).map(|_| ());
-    let written = written.and(report::complete(&folder, case));
-    super::print_result(
-        asked.json,
-        folder.dir(),
-        written,
-        || results::text(&found),
-        || files::describe(&found),
-    )?;
-    Ok(ExitCode::SUCCESS)
+    let written = files::write(&mut folder, &found).and(report::complete(&folder, case));
+    let (text, words) = (|| results::text(&found), || files::describe(&found));
+    super::print_result(asked.json, folder.dir(), written, text, words)
 }
 
 /// Command that repeats the search inside the folder of the result.
@@ -81,13 +74,13 @@ fn again(asked: &SenseArguments) -> String {
 
 fn question(asked: &SenseArguments, end_s: f64) -> Result<SenseOptions> {
     if let Some(noise) = asked.noise.filter(|noise| !(1e-6..=1e9).contains(noise)) {
-        return Err(Error::Usage(format!(
+        return usage(format!(
             "--noise {noise}: expected a standard deviation in Pa, from 1e-6 to 1e9"
-        )));
+        ));
     }
     let at_s = asked.at.unwrap_or(end_s);
     if !at_s.is_finite() {
-        return Err(Error::Usage(format!("--at {at_s}: an instant in seconds")));
+        return usage(format!("--at {at_s}: an instant in seconds"));
     }
     let smoothing = match asked.smoothing.as_deref().unwrap_or("likelihood") {
         "likelihood" => Smoothing::Likelihood,
@@ -97,7 +90,7 @@ fn question(asked: &SenseArguments, end_s: f64) -> Result<SenseOptions> {
             Ok(deviation) if deviation.is_finite() && deviation > 0.0 => Smoothing::Fixed(deviation),
             _ => {
                 let wanted = "likelihood, discrepancy, off, or a standard deviation in N/m above 0";
-                return Err(Error::Usage(format!("--smoothing {other}: {wanted}")));
+                return usage(format!("--smoothing {other}: {wanted}"));
             }
         },
     };
@@ -113,16 +106,16 @@ fn question(asked: &SenseArguments, end_s: f64) -> Result<SenseOptions> {
         .collect::<Result<_>>()?;
     let profile = loads.iter().any(|load| matches!(load, Basis::Profile(_)));
     if let (Smoothing::Fixed(deviation), true) = (smoothing, asked.dynamic) {
-        return Err(Error::Usage(format!(
+        return usage(format!(
             "--smoothing {deviation}: a number applies to a profile at rest only; with --dynamic, use likelihood, \
              discrepancy or off"
-        )));
+        ));
     }
     if let Some(how) = asked.smoothing.as_ref().filter(|_| !profile && !asked.dynamic) {
-        return Err(Error::Usage(format!(
+        return usage(format!(
             "--smoothing {how}: smoothing applies to a profile or to a load over time, and neither is requested. \
              Request one (--load profile:10, --dynamic), or leave --smoothing out"
-        )));
+        ));
     }
     Ok(SenseOptions {
         loads,

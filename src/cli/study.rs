@@ -46,8 +46,7 @@ pub fn study(asked: &StudyArguments) -> Result<ExitCode> {
     drop(progress);
     let stopped = interrupt::raised(&flag);
     let found = journal::outcome(found, &folder, stopped)?;
-    let written = files::write(&mut folder, &found).map(|_| ());
-    let written = written.and(report::complete(&folder, case));
+    let written = files::write(&mut folder, &found).and(report::complete(&folder, case));
     let written = journal::end(&evaluations, &folder, stopped, written);
     let words = || {
         let notes: String = found.notes.iter().map(|n| format!("note: {n}\n")).collect();

@@ -11,7 +11,7 @@ use super::arguments::{CaseArguments, UncertainArguments};
 use super::sweep::progress::Counter;
 use super::{interrupt, journal, resources, sweep, terminal};
 use crate::case::{self, Case, inherited};
-use crate::error::{Error, Result};
+use crate::error::{Result, usage};
 use crate::output::ResultFolder;
 use crate::output::uncertainty as files;
 use crate::results::run::Bands;
@@ -58,8 +58,7 @@ impl Uncertain {
             return Ok(None);
         }
         if path == Path::new("-") {
-            let what = "--uncertain: the case is read again for every sample; name its file in place of -";
-            return Err(Error::Usage(what.into()));
+            return usage("--uncertain: the case is read again for every sample; name its file in place of -");
         }
         let read = |text: &String| VariedNumber::parse_as("--uncertain", text);
         let inputs = asked.uncertain.iter().map(read).collect::<Result<Vec<_>>>()?;

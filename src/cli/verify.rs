@@ -130,11 +130,11 @@ mod tests {
         let good = || row(Ok(vec![ExactFigure::relative("x", 1.0, 1.0, 1e-9)]));
         assert_eq!(exit_code(&[good()]), 0);
         let missed = row(Ok(vec![ExactFigure::relative("x", 1.1, 1.0, 1e-9)]));
-        let failed = row(Err(Error::Usage("it broke".into())));
+        let failed = row(usage("it broke"));
         for bad in [missed, failed, row(Ok(vec![]))] {
             assert_eq!(exit_code(&[good(), bad]), 4);
         }
-        let text = table(&[good(), row(Err(Error::Usage("it broke".into())))]);
+        let text = table(&[good(), row(usage("it broke"))]);
         assert!(
             text.contains("it broke") && text.contains("FAIL") && text.contains("1 of 2 exact"),
             "{text}"

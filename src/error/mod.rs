@@ -198,3 +198,11 @@ impl Error {
 
 /// Result with [`Error`] as its error.
 pub type Result<T> = std::result::Result<T, Error>;
+
+/// Rejects a request, with the reason.
+///
+/// # Errors
+/// Always [`Error::Usage`].
+pub fn usage<T>(what: impl Into<String>) -> Result<T> {
+    Err(Error::Usage(what.into()))
+}

@@ -2,7 +2,6 @@
 
 use std::f64::consts::PI;
 use std::fmt::Write as _;
-use std::path::PathBuf;
 
 use super::columns::{table, warnings};
 use super::folder::ResultFolder;
@@ -142,10 +141,9 @@ fn mode_row(mode: &LatticeModeRecord) -> [String; 6] {
 ///
 /// # Errors
 /// A file cannot be written.
-pub fn write(folder: &mut ResultFolder, found: &BandsRecord) -> Result<Vec<PathBuf>> {
-    let mut files = vec![(CSV, csv(found)), (JSON, results::text(found))];
-    files.extend(picture(found).svg().map(|text| (PICTURE, text)));
-    folder.fill(files)
+pub fn write(folder: &mut ResultFolder, found: &BandsRecord) -> Result<()> {
+    let files = [(CSV, csv(found)), (JSON, results::text(found))];
+    folder.fill(files, [(PICTURE, picture(found).svg())])
 }
 
 /// Largest attenuation that is drawn [dB per cell].

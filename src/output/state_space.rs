@@ -8,7 +8,7 @@ use zip::ZipWriter;
 
 use super::arrays::write_array;
 use super::folder::{fault, put_whole};
-use crate::error::{Error, Result};
+use crate::error::{Result, usage};
 use crate::run::response::self_test::SelfTest;
 use crate::run::response::state_space::StateSpace;
 
@@ -81,7 +81,7 @@ pub fn write(
                 "--state-space {}: a file that ends in .npz, .mat or .json is wanted",
                 path.display()
             );
-            return Err(Error::Usage(what));
+            return usage(what);
         }
     };
     put_whole(path, |file| file.write_all(&bytes))

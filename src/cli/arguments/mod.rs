@@ -106,41 +106,6 @@ pub enum Command {
     Completions(CompletionsArguments),
 }
 
-impl Command {
-    /// True if JSON output is requested, as by a script.
-    pub fn json(&self) -> bool {
-        match self {
-            Self::Run(a) => a.json,
-            Self::Check(a) => a.json,
-            Self::Coefficients(a) => a.json,
-            Self::Measure(a) => a.json,
-            Self::Equilibrium(a) => a.json,
-            Self::Study(a) => a.json,
-            Self::Effects(a) => a.json,
-            Self::Modes(a) => a.json,
-            Self::Response(a) => a.json,
-            Self::Bands(a) => a.json,
-            Self::Floquet(a) => a.json,
-            Self::Periodic(a) => a.json,
-            Self::Sweep(a) => a.json,
-            Self::Merge(a) => a.json,
-            Self::Fit(a) => a.json,
-            Self::Sense(a) => a.json,
-            Self::Optimize(a) => a.json,
-            Self::Compare(a) => a.json,
-            Self::Mapping(a) => a.json,
-            Self::Verify(a) => a.json,
-            Self::Schema(a) => a.json,
-            Self::Export(a) => a.json,
-            Self::Report(a) => a.json,
-            Self::Plot(a) => a.json,
-            Self::Explain(a) => a.json,
-            Self::New(a) => a.json,
-            Self::Completions(_) => false,
-        }
-    }
-}
-
 /// A case file and changes to it.
 #[derive(Clone, Debug, Args)]
 pub struct CaseArguments {

@@ -6,7 +6,7 @@ use clap::{Args, ValueEnum};
 
 use super::{PlaceArguments, ResultArguments};
 use crate::cli::response::{DEFAULT_BAND, check_band, each_frequency, each_once};
-use crate::error::{Error, Result};
+use crate::error::{Result, usage};
 use crate::study::analysis::{AnalysisKind, ResponseAnalysis};
 use crate::study::sweep::Shard;
 
@@ -68,9 +68,7 @@ impl AnalysisArguments {
                     ("--frequency", !self.frequency.is_empty()),
                 ];
                 if let Some((option, _)) = given.iter().find(|(_, given)| *given) {
-                    return Err(Error::Usage(format!(
-                        "{option} is an option of --command response only"
-                    )));
+                    return usage(format!("{option} is an option of --command response only"));
                 }
                 match other {
                     DesignCommand::Periodic => AnalysisKind::Periodic,
@@ -87,7 +85,7 @@ impl AnalysisArguments {
         let Some(input) = self.input.clone().filter(|_| !self.output.is_empty()) else {
             let what = "--command response needs --input POINTER, a signal of the case such as /ends/root/clamped/u1_m, and \
                         --output NAME, such as tip_u1";
-            return Err(Error::Usage(what.into()));
+            return usage(what);
         };
         let [first, last] = DEFAULT_BAND;
         let [from, to] = [self.from.unwrap_or(first), self.to.unwrap_or(last)];

@@ -10,7 +10,7 @@ use std::fmt::Write as _;
 use std::process::ExitCode;
 
 use clap::Args;
-use serde_json::{Value, json};
+use serde_json::json;
 
 use crate::case::{KeyDescription, meanings, nearest, synonyms};
 use crate::error::{Code, Error, Result};
@@ -33,21 +33,22 @@ pub fn explain(asked: &ExplainArguments) -> Result<ExitCode> {
     let what = asked.what.join(" ");
     if what.is_empty() {
         let all = Code::ALL.iter();
-        return answer(
-            asked,
+        let value = || {
             all.clone()
                 .map(|c| json!({"code": c.id(), "title": c.title()}))
-                .collect(),
-            all.fold(String::new(), |text, c| text + c.id() + "  " + c.title() + "\n"),
-        );
+                .collect()
+        };
+        let text = || {
+            all.clone()
+                .fold(String::new(), |text, c| text + c.id() + "  " + c.title() + "\n")
+        };
+        return super::answer(asked.json, value, text);
     }
     let what = what.as_str();
     if let Some(code) = Code::find(what) {
-        return answer(
-            asked,
-            json!({"code": code.id(), "title": code.title(), "text": code.text()}),
-            format!("{} {}\n\n{}\n", code.id(), code.title(), code.text().replace("**", "")),
-        );
+        let value = || json!({"code": code.id(), "title": code.title(), "text": code.text()});
+        let text = || format!("{} {}\n\n{}\n", code.id(), code.title(), code.text().replace("**", ""));
+        return super::answer(asked.json, value, text);
     }
     // a heading in the form of a table, a pointer in the form of a case
     let name = what.split(" [").next().unwrap_or(what);
@@ -110,7 +111,7 @@ pub fn explain(asked: &ExplainArguments) -> Result<ExitCode> {
         row
     });
     let places = elsewhere.iter().map(|place| json!({"word": name, "meaning": place}));
-    answer(asked, keys.chain(others).chain(places).collect(), text)
+    super::answer(asked.json, || keys.chain(others).chain(places).collect(), || text)
 }
 
 /// Converts the name of a type to that of a key: check_valve for CheckValve; empty if it is not the name of a type.
@@ -174,9 +175,4 @@ fn inside<'m>(all: &'m [KeyDescription], of: &'m KeyDescription) -> impl Iterato
             })
         })
     })
-}
-
-fn answer(asked: &ExplainArguments, json: Value, text: String) -> Result<ExitCode> {
-    super::print(&if asked.json { format!("{json:#}\n") } else { text })?;
-    Ok(ExitCode::SUCCESS)
 }

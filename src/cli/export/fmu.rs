@@ -5,10 +5,10 @@ use std::process::ExitCode;
 
 use serde_json::{Value, json};
 
-use super::ExportArguments;
 use super::state_space::TestedModel;
+use super::{ExportArguments, joined};
 use crate::case::{self, Case};
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, usage};
 use crate::output::columns::warnings;
 use crate::output::fmu::{FmuContents, FmuInput, Libraries};
 use crate::output::numbers::{counted, significant};
@@ -60,16 +60,16 @@ impl InputArgument {
         if range.low < range.high {
             return Ok([range.low, range.high]);
         }
-        Err(Error::Usage(format!(
+        usage(format!(
             "--input {0}: the signal is constant in the case, so that the range of its values is unknown. Give it: --input {0}=LOW,HIGH",
             self.pointer
-        )))
+        ))
     }
 }
 
 /// Writes the FMU, and prints its variables.
 pub(super) fn fmu(asked: &ExportArguments, file: &Path) -> Result<ExitCode> {
-    let refused = |why: &str| Err(Error::Usage(format!("--fmu {}: {why}", file.display())));
+    let refused = |why: &str| usage(format!("--fmu {}: {why}", file.display()));
     if file.extension().is_none_or(|ending| ending != "fmu") {
         return refused("expected a file name that ends in .fmu");
     }
@@ -103,22 +103,16 @@ pub(super) fn fmu(asked: &ExportArguments, file: &Path) -> Result<ExitCode> {
         None => nonlinear(asked, &case, &given)?,
     };
     let bytes = contents.write(file, &libraries)?;
-    if asked.json {
-        let mut answer = json!({"path": file, "bytes": bytes, "inputs": contents.inputs.iter().map(FmuInput::name).collect::<Vec<_>>()});
-        if let (Value::Object(all), Value::Object(more)) = (&mut answer, facts) {
-            all.extend(more);
-        }
-        crate::cli::print(&format!("{answer:#}\n"))?;
-    } else {
+    let value = || {
+        let inputs: Vec<_> = contents.inputs.iter().map(FmuInput::name).collect();
+        joined(json!({"path": file, "bytes": bytes, "inputs": inputs}), facts)
+    };
+    let text = || {
         let inputs: String = contents.inputs.iter().map(describe).collect();
-        crate::cli::print(&format!(
-            "{inputs}{text}{}  {} MB\n{}",
-            file.display(),
-            significant(bytes as f64 / 1e6, 3),
-            warnings(&found)
-        ))?;
-    }
-    Ok(ExitCode::SUCCESS)
+        let size = significant(bytes as f64 / 1e6, 3);
+        format!("{inputs}{text}{}  {size} MB\n{}", file.display(), warnings(&found))
+    };
+    crate::cli::answer(asked.json, value, text)
 }
 
 /// Line about an input.
@@ -191,25 +185,20 @@ fn nonlinear<'a>(asked: &ExportArguments, case: &'a Case, given: &[InputArgument
 /// Small motions of the case.
 fn linear<'a>(asked: &ExportArguments, case: &'a Case, given: &[InputArgument]) -> Result<Found<'a>> {
     let [input] = given else {
-        return Err(Error::Usage(format!(
-            "--error: a linear model has one --input, not {}",
-            given.len()
-        )));
+        return usage(format!("--error: a linear model has one --input, not {}", given.len()));
     };
     if asked.output.is_empty() {
-        return Err(Error::Usage(
-            "--error: name the outputs of the linear model with --output".into(),
-        ));
+        return usage("--error: name the outputs of the linear model with --output");
     }
     let found = TestedModel::new(asked, case, &input.pointer)?;
     if let Some([low, high]) = input
         .range
         .filter(|[low, high]| !(low..=high).contains(&&found.model.u0))
     {
-        return Err(Error::Usage(format!(
+        return usage(format!(
             "--input {}={low},{high}: the range must contain the value of the case at the operating point, {}",
             found.input, found.model.u0
-        )));
+        ));
     }
     let contents = FmuContents {
         case,

@@ -8,11 +8,11 @@ use std::path::PathBuf;
 use std::process::ExitCode;
 
 use clap::{Args, ValueEnum};
-use serde_json::json;
+use serde_json::{Map, Value, json};
 
 use crate::case;
 use crate::cli::progress_line;
-use crate::error::{Error, Result};
+use crate::error::{Result, usage};
 use crate::output::export::{self, ExportedFiles, instants, tables, vtk};
 use crate::output::folder::CASE;
 use crate::output::kind::FolderKind;
@@ -102,12 +102,12 @@ pub fn export(asked: &ExportArguments) -> Result<ExitCode> {
     let out = asked.out.as_deref().unwrap_or(&asked.dir);
     let elsewhere = fs::canonicalize(out).ok() != fs::canonicalize(&asked.dir).ok();
     if let Some(kind) = FolderKind::within(out).filter(|_| elsewhere) {
-        return Err(Error::Usage(format!(
+        return usage(format!(
             "--out {}: it contains the result of `slcbeam {}`, and these files would seem to belong to that result; \
              name another folder",
             out.display(),
             kind.command()
-        )));
+        ));
     }
     let mut all: Vec<(&str, ExportedFiles)> = vec![];
     if asked.format.contains(&Format::Csv) {
@@ -119,30 +119,29 @@ pub fn export(asked: &ExportArguments) -> Result<ExitCode> {
     }
     let times: Vec<f64> = chosen.iter().map(|&k| from.field_times[k]).collect();
     let (first, last) = (times[0], times[times.len() - 1]);
-    if asked.json {
-        let formats = all.iter().map(|(name, w)| {
-            let about = json!({"path": w.path, "files": w.files, "bytes": w.bytes});
-            (name.to_string(), about)
+    let value = || {
+        let about = |w: &ExportedFiles| json!({"path": w.path, "files": w.files, "bytes": w.bytes});
+        let formats: Map<_, _> = all.iter().map(|(name, w)| (name.to_string(), about(w))).collect();
+        json!({"from_s": first, "to_s": last, "instants": times.len(), "formats": formats})
+    };
+    let text = || {
+        let [from, to] = [first, last].map(|t| significant(t, 6));
+        let files = all.iter().map(|(name, w)| {
+            let (files, size) = (counted(w.files as u64, "file"), significant(w.bytes as f64 / 1e6, 3));
+            format!("{name}  {}  {files}, {size} MB\n", w.path.display())
         });
-        let formats: serde_json::Map<_, _> = formats.collect();
-        let summary = json!({"from_s": first, "to_s": last, "instants": times.len(), "formats": formats});
-        crate::cli::print(&format!("{summary:#}\n"))?;
-    } else {
-        let mut text = format!(
-            "{} from {} s to {} s\n",
-            counted(times.len() as u64, "instant"),
-            significant(first, 6),
-            significant(last, 6)
-        );
-        for (name, w) in &all {
-            let size = significant(w.bytes as f64 / 1e6, 3);
-            text += &format!(
-                "{name}  {}  {}, {size} MB\n",
-                w.path.display(),
-                counted(w.files as u64, "file")
-            );
-        }
-        crate::cli::print(&text)?;
+        let instants = counted(times.len() as u64, "instant");
+        files.fold(format!("{instants} from {from} s to {to} s\n"), |text, line| {
+            text + &line
+        })
+    };
+    crate::cli::answer(asked.json, value, text)
+}
+
+/// Members of a JSON object, and those of another.
+fn joined(mut own: Value, others: Value) -> Value {
+    if let (Value::Object(all), Value::Object(more)) = (&mut own, others) {
+        all.extend(more);
     }
-    Ok(ExitCode::SUCCESS)
+    own
 }

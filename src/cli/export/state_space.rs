@@ -6,11 +6,11 @@ use std::process::ExitCode;
 
 use serde_json::{Value, json};
 
-use super::ExportArguments;
+use super::{ExportArguments, joined};
 use crate::case::{self, Case};
 use crate::cli::response::check_band;
 use crate::error::numbers::error_percent;
-use crate::error::{Code, Error, Result};
+use crate::error::{Code, Result, usage};
 use crate::output::columns::warnings;
 use crate::output::numbers::{counted, significant};
 use crate::output::state_space as files;
@@ -48,9 +48,7 @@ impl TestedModel {
         if let Some(error) = asked.error {
             check_band([asked.from, asked.to], 2, asked.from < asked.to, "below")?;
             if !(MIN_ERROR..1.0).contains(&error) {
-                return Err(Error::Usage(format!(
-                    "--error {error}: expected at least {MIN_ERROR:e}, below 1"
-                )));
+                return usage(format!("--error {error}: expected at least {MIN_ERROR:e}, below 1"));
             }
         }
         let response = LinearResponse::new(case, input, &asked.output, asked.at)?;
@@ -68,10 +66,10 @@ impl TestedModel {
                 (model, poles.and(growing))
             }
             None if response.about.y.len() > MOST_STATES => {
-                return Err(Error::Usage(format!(
+                return usage(format!(
                     "--state-space: {} are too many for full matrices (at most {MOST_STATES}); use --error 1e-3 for a reduced model",
                     counted(response.about.y.len() as u64, "unknown")
-                )));
+                ));
             }
             None => (StateSpace::new(&response)?, growing(case, asked.at, &response)),
         };
@@ -160,25 +158,25 @@ impl TestedModel {
 /// Writes the matrices.
 pub(super) fn state_space(asked: &ExportArguments, file: &Path) -> Result<ExitCode> {
     if file.exists() && !asked.force {
-        return Err(Error::Usage(format!(
+        return usage(format!(
             "--state-space {}: the file exists and is not overwritten; name another file, or use --force",
             file.display()
-        )));
+        ));
     }
     if file.exists() && !replaceable(file) {
-        return Err(Error::Usage(format!(
+        return usage(format!(
             "--state-space {}: the file contains something else than a state-space model and is not overwritten; name another file",
             file.display()
-        )));
+        ));
     }
     let [input] = &asked.input[..] else {
-        return Err(Error::Usage(format!(
+        return usage(format!(
             "--state-space: one --input is needed, not {}",
             asked.input.len()
-        )));
+        ));
     };
     if asked.output.is_empty() {
-        return Err(Error::Usage("--state-space: name its outputs with --output".into()));
+        return usage("--state-space: name its outputs with --output");
     }
     let case = case::load(&asked.dir, &asked.sets)?;
     let found = TestedModel::new(asked, &case, input)?;
@@ -193,21 +191,8 @@ pub(super) fn state_space(asked: &ExportArguments, file: &Path) -> Result<ExitCo
             found.tested.as_ref().and_then(|tested| tested.as_ref().ok()),
         ),
     )?;
-    if asked.json {
-        let mut answer = json!({"path": file});
-        if let (Value::Object(all), Value::Object(more)) = (&mut answer, found.json()) {
-            all.extend(more);
-        }
-        crate::cli::print(&format!("{answer:#}\n"))?;
-    } else {
-        crate::cli::print(&format!(
-            "{}{}\n{}",
-            found.text(),
-            file.display(),
-            warnings(&found.warnings)
-        ))?;
-    }
-    Ok(ExitCode::SUCCESS)
+    let text = || format!("{}{}\n{}", found.text(), file.display(), warnings(&found.warnings));
+    crate::cli::answer(asked.json, || joined(json!({"path": file}), found.json()), text)
 }
 
 /// True if a file may be overwritten: a JSON file contains matrices, so that no case and no result is lost.

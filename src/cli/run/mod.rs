@@ -18,7 +18,7 @@ use super::{interrupt, progress_line, resources, summary_box, terminal};
 use crate::case::Case;
 use crate::case::parameter::Parameter;
 use crate::discrete::System;
-use crate::error::{Error, Result};
+use crate::error::{Result, usage};
 use crate::model::Model;
 use crate::output::Labels;
 use crate::output::folder::{FIELDS, HISTORY, ResultFolder, SUMMARY};
@@ -54,7 +54,7 @@ pub fn run(asked: &RunArguments, began: Instant) -> Result<ExitCode> {
     if (asked.accuracy.is_some() || asked.resume) && !asked.uncertain.uncertain.is_empty() {
         let what = "--uncertain cannot be combined with --accuracy or --resume. After a run with --accuracy, \
                     summary.json contains its mesh and tolerance";
-        return Err(Error::Usage(what.into()));
+        return usage(what);
     }
     let mut uncertain = Uncertain::new(&asked.uncertain, &asked.case, case, AnalysisKind::Run, asked.quiet)?;
     let way = Way {

@@ -9,7 +9,7 @@ use crate::case::Case;
 use crate::case::parameter::Parameter;
 use crate::cli::terminal;
 use crate::discrete::System;
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, usage};
 use crate::output::Labels;
 use crate::output::checkpoint;
 use crate::output::folder::{CASE, ResultFolder, text_of};
@@ -72,9 +72,9 @@ fn ended(case: &Case, asked: &[Parameter], folder: &ResultFolder) -> Result<Outc
         return Err(another_case(&there, case, "the result"));
     }
     if !asked.iter().all(|p| summary.sensitivities.contains_key(&p.pointer)) {
-        return Err(Error::Usage(
-            "--sensitivity: the finished run does not contain these derivatives; run it again without --resume".into(),
-        ));
+        return usage(
+            "--sensitivity: the finished run does not contain these derivatives; run it again without --resume",
+        );
     }
     folder.remove_raw()?;
     terminal::print_line("slcbeam: the run had ended; nothing to resume");

@@ -13,7 +13,7 @@ use std::time::Instant;
 use super::arguments::{Script, SweepArguments};
 use super::{interrupt, run, terminal};
 use crate::case::{Case, is_below};
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, usage};
 use crate::output::folder::ResultFolder;
 use crate::output::kind::FolderKind;
 use crate::output::report;
@@ -45,11 +45,11 @@ pub fn sweep(asked: &SweepArguments) -> Result<ExitCode> {
     if asked.keep_folders && plan.command != AnalysisKind::Run {
         let what = "--keep-folders keeps the folders of runs only; --keep-cases keeps the case of every design, with \
                     which the command can be repeated";
-        return Err(Error::Usage(what.into()));
+        return usage(what);
     }
     let jobs = jobs(asked.jobs)?;
     if asked.shards == 0 {
-        return Err(Error::Usage("--shards: 1 or more".into()));
+        return usage("--shards: 1 or more");
     }
     if let Some(scheduler) = asked.script {
         return print_script(asked, plan, scheduler);
@@ -59,10 +59,10 @@ pub fn sweep(asked: &SweepArguments) -> Result<ExitCode> {
     if let Some(there) = &before
         && let Some(why) = plan.difference(there)
     {
-        return Err(Error::Usage(format!(
+        return usage(format!(
             "{} contains another sweep: {why}; name another folder with --out, or begin again with --restart",
             folder.dir().display()
-        )));
+        ));
     }
     let journal = folder.path(JOURNAL);
     let done = match &before {
@@ -97,13 +97,8 @@ pub fn sweep(asked: &SweepArguments) -> Result<ExitCode> {
         true => Ok(()),
         false => report::write(folder.dir(), None).map(|_| ()),
     });
-    super::print_result(
-        asked.json,
-        folder.dir(),
-        written,
-        || results::text(&summary),
-        || text::describe(&summary, &survey).unwrap_or_default(),
-    )?;
+    let words = || text::describe(&summary, &survey).unwrap_or_default();
+    super::print_result(asked.json, folder.dir(), written, || results::text(&summary), words)?;
     if stopped {
         let missing = summary.missing;
         terminal::print_line(&format!(
@@ -125,7 +120,7 @@ pub fn jobs(asked: Option<usize>) -> Result<usize> {
     let jobs = asked.unwrap_or_else(pool::cores);
     match (1..=MOST_AT_ONCE).contains(&jobs) {
         true => Ok(jobs),
-        false => Err(Error::Usage(format!("--jobs {jobs}: from 1 to {MOST_AT_ONCE}"))),
+        false => usage(format!("--jobs {jobs}: from 1 to {MOST_AT_ONCE}")),
     }
 }
 
@@ -141,7 +136,7 @@ pub fn overridden(sets: &[String], again: &[String], why: impl Fn(&str) -> Strin
                 "--set {set}: it would have no effect, because {}; leave one of them out",
                 why(other)
             );
-            return Err(Error::Usage(what));
+            return usage(what);
         }
     }
     Ok(())
@@ -323,20 +318,18 @@ impl Keep<'_> {
 
 fn print_script(asked: &SweepArguments, plan: &SweepPlan, scheduler: Script) -> Result<ExitCode> {
     if asked.cases.iter().any(|path| path.as_os_str() == "-") {
-        return Err(Error::Usage(
-            "--script: jobs read the case themselves; name its file in place of -".into(),
-        ));
+        return usage("--script: jobs read the case themselves; name its file in place of -");
     }
     let program = std::env::current_exe().unwrap_or_else(|_| "slcbeam".into());
     let out = asked.result.place.folder(&plan.case, FolderKind::Designs);
     let files = asked.cases.iter().chain(&asked.designs);
     for path in files.chain([&program, &out]) {
         if path.to_str().is_none_or(|name| name.contains(char::is_control)) {
-            return Err(Error::Usage(format!(
+            return usage(format!(
                 "--script: {:?} cannot be named in a script: it contains control characters or is not UTF-8. Rename \
                  it.",
                 path.display()
-            )));
+            ));
         }
     }
     let scheduler = match scheduler {

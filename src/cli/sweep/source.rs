@@ -6,7 +6,7 @@ use super::overridden;
 use crate::case::{self, Case};
 use crate::cli::arguments::SweepArguments;
 use crate::cli::{progress_line, resources, terminal};
-use crate::error::{Error, Result};
+use crate::error::{Result, usage};
 use crate::study::sweep::plan::{SweepPlan, SweptCase};
 use crate::study::sweep::table::DesignTable;
 use crate::study::sweep::{Design, Designs, Draw, VariedNumber};
@@ -43,7 +43,7 @@ impl DesignSource {
         if varied.is_empty() && asked.designs.is_none() && asked.cases.len() == 1 {
             let what = "only one case, and no number is varied: give --vary POINTER=SPEC, --designs FILE.csv, or \
                         several cases";
-            return Err(Error::Usage(what.into()));
+            return usage(what);
         }
         let texts = asked.cases.iter().map(|path| Ok((path.clone(), case::text(path)?)));
         let texts = texts.collect::<Result<Vec<_>>>()?;
@@ -69,7 +69,7 @@ impl DesignSource {
             let what = format!(
                 "--accuracy chooses mesh and tolerance of every design, so that {pointer} would have no effect"
             );
-            return Err(Error::Usage(format!("{what}; leave one of them out")));
+            return usage(format!("{what}; leave one of them out"));
         }
         let mut plan = SweepPlan {
             case: String::new(),
@@ -103,7 +103,7 @@ impl DesignSource {
             first.get_or_insert(case);
         }
         let Some(first) = first else {
-            return Err(Error::Usage("no case".into()));
+            return usage("no case");
         };
         plan.case.clone_from(&first.name);
         alike(&plan.cases)?;
@@ -176,10 +176,10 @@ fn name(designs: &Designs, design: &Design, more: usize) {
 fn alike(cases: &[SweptCase]) -> Result<()> {
     for (k, case) in cases.iter().enumerate() {
         if let Some(other) = cases[..k].iter().find(|other| other.name == case.name) {
-            return Err(Error::Usage(format!(
+            return usage(format!(
                 "{} and {} both have the name {}, by which rows of the table are distinguished; rename one of the cases",
                 other.file, case.file, case.name
-            )));
+            ));
         }
     }
     Ok(())

@@ -3,8 +3,6 @@
 mod picture;
 mod table;
 
-use std::path::PathBuf;
-
 use super::folder::ResultFolder;
 use crate::discrete::quantities::Interest;
 use crate::error::Result;
@@ -81,8 +79,7 @@ pub fn json(found: &Ablation) -> String {
 }
 
 /// Writes the files into a folder; other files in it stay.
-pub fn write(folder: &mut ResultFolder, found: &Ablation, shown: &ShownQuantity) -> Result<Vec<PathBuf>> {
-    let mut files = vec![(CSV, csv(found)), (JSON, json(found))];
-    files.extend(picture::draw(found, shown).map(|text| (PICTURE, text)));
-    folder.fill(files)
+pub fn write(folder: &mut ResultFolder, found: &Ablation, shown: &ShownQuantity) -> Result<()> {
+    let files = [(CSV, csv(found)), (JSON, json(found))];
+    folder.fill(files, [(PICTURE, picture::draw(found, shown))])
 }

@@ -2,8 +2,6 @@
 
 mod text;
 
-use std::path::PathBuf;
-
 use super::folder::ResultFolder;
 use super::numbers::shortest;
 use super::plot::canvas::{LineStyle, TextAnchor, TextStyle};
@@ -121,13 +119,13 @@ pub fn json(found: &LoadPath) -> String {
 }
 
 /// Writes the files into a folder; other files in it stay.
-pub fn write(folder: &mut ResultFolder, found: &LoadPath) -> Result<Vec<PathBuf>> {
+pub fn write(folder: &mut ResultFolder, found: &LoadPath) -> Result<()> {
     let system = System::new(found.case)?;
     let (theta, placed) = (FieldAxis::Nodes.values(&system, 0.0), PlacedNodes::new(&system));
     let shapes = shapes(found, &theta, placed.as_ref());
-    let mut files = vec![(CSV, table(found)), (SHAPES, shapes), (JSON, json(found))];
-    files.extend(drawn(found, &theta, placed.as_ref()).map(|text| (PICTURE, text)));
-    folder.fill_with(&found.case.written(), files)
+    let files = vec![(CSV, table(found)), (SHAPES, shapes), (JSON, json(found))];
+    let picture = (PICTURE, drawn(found, &theta, placed.as_ref()));
+    folder.fill_with(&found.case.written(), files, picture)
 }
 
 /// One row per state, with its stage (from 1) if there are several.

@@ -1,6 +1,6 @@
 //! Chooses recorded times: all, ranges, single times, every n-th.
 
-use crate::error::{Error, Result};
+use crate::error::{Result, usage};
 
 /// Indices of the instants in `times` that `list` names (`0.1,0.45:0.5` [s]; absent: all), thinned to every `every`-th.
 ///
@@ -23,7 +23,7 @@ pub fn choose(times: &[f64], list: Option<&str>, every: usize) -> Result<Vec<usi
     };
     chosen = chosen.into_iter().step_by(every.max(1)).collect();
     if chosen.is_empty() {
-        return Err(Error::Usage("the result holds no instant of its fields".into()));
+        return usage("the result holds no instant of its fields");
     }
     Ok(chosen)
 }
@@ -32,9 +32,9 @@ fn named(times: &[f64], piece: &str) -> Result<Vec<usize>> {
     let (first, last) = (times.first().copied(), times.last().copied());
     let (first, last) = (first.unwrap_or(0.0), last.unwrap_or(0.0));
     let refuse = |what: &str| {
-        Err(Error::Usage(format!(
+        usage(format!(
             "--times {piece}: {what}; fields are recorded from {first} s to {last} s; give times and ranges such as 0.1,0.45:0.5"
-        )))
+        ))
     };
     let number = |text: &str| text.trim().parse::<f64>().ok().filter(|t| t.is_finite());
     // A time typed with fewer digits than recorded may be slightly outside.

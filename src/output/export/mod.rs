@@ -17,7 +17,7 @@ use std::path::{Path, PathBuf};
 use super::folder::{CASE, FIELDS, RAW_FIELDS};
 use super::kind::FolderKind;
 use super::reading;
-use crate::error::{Error, Result};
+use crate::error::{Result, usage};
 use crate::study::compare::Recording;
 
 /// Files written in one format.
@@ -51,20 +51,20 @@ impl ExportedFiles {
 /// # Errors
 /// [`Error::Usage`] if `dir` is no result folder or its run has not ended; [`Error::Output`] if a file cannot be read.
 pub fn read(dir: &Path) -> Result<Recording> {
-    let usage = |what: &str| Err(Error::Usage(format!("{} {what}", dir.display())));
+    let refuse = |what: &str| usage(format!("{} {what}", dir.display()));
     if let Some(what) = FolderKind::no_run(dir) {
-        return Err(Error::Usage(what));
+        return usage(what);
     }
     if !dir.join(CASE).is_file() {
-        return usage("is no result folder: it has no case.json; `slcbeam run CASE --out DIR` creates one");
+        return refuse("is no result folder: it has no case.json; `slcbeam run CASE --out DIR` creates one");
     }
     if !dir.join(FIELDS).is_file() {
         return if dir.join(RAW_FIELDS).is_dir() {
-            usage(
+            refuse(
                 "has no fields.npz yet: its run continues, or was killed; `slcbeam run CASE --out DIR --resume` resumes from its checkpoint",
             )
         } else {
-            usage("has no fields.npz: it contains no fields over time")
+            refuse("has no fields.npz: it contains no fields over time")
         };
     }
     reading::read(dir)

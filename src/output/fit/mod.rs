@@ -33,9 +33,16 @@ pub const FITTED: &str = "fitted-case.json";
 /// # Errors
 /// A file cannot be written.
 pub fn write(folder: &mut ResultFolder, problem: &FitProblem, found: &Fitted) -> Result<()> {
-    let mut files = vec![(CSV, table(problem, found)), (JSON, results::text(&found.fit))];
-    files.extend(drawn(problem, found).map(|text| (PICTURE, text)));
-    folder.fill_with_both(&problem.case.written(), (FITTED, &found.case.written()), files)
+    let (files, picture) = (
+        vec![(CSV, table(problem, found)), (JSON, results::text(&found.fit))],
+        drawn(problem, found),
+    );
+    folder.fill_with_both(
+        &problem.case.written(),
+        (FITTED, &found.case.written()),
+        files,
+        (PICTURE, picture),
+    )
 }
 
 /// Columns beside the observations: names with units, and values.

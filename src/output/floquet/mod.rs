@@ -3,7 +3,6 @@
 
 use std::f64::consts::TAU;
 use std::fmt::Write as _;
-use std::path::PathBuf;
 
 use super::columns::{table, warnings};
 use super::folder::ResultFolder;
@@ -98,13 +97,12 @@ pub fn describe(found: &CycleResult) -> String {
 }
 
 /// Writes the files of one case into a folder.
-pub fn write(folder: &mut ResultFolder, found: &CycleResult) -> Result<Vec<PathBuf>> {
-    let mut files = vec![
+pub fn write(folder: &mut ResultFolder, found: &CycleResult) -> Result<()> {
+    let files = [
         ("floquet.csv", csv(&found.floquet)),
         ("floquet.json", results::text(found)),
     ];
-    files.extend(multipliers(found).map(|text| ("floquet.svg", text)));
-    folder.fill(files)
+    folder.fill(files, [("floquet.svg", multipliers(found))])
 }
 
 /// Points of a sheet with their frequencies [Hz] and amplitudes [m].
@@ -168,10 +166,9 @@ pub fn map_words(map: &Map) -> String {
 }
 
 /// Writes the files of a map into a folder.
-pub fn write_map(folder: &mut ResultFolder, map: &Map) -> Result<Vec<PathBuf>> {
-    let mut files = vec![("map.csv", map_csv(map)), ("map.json", results::text(map))];
-    files.extend(tongues(map).map(|text| ("map.svg", text)));
-    folder.fill(files)
+pub fn write_map(folder: &mut ResultFolder, map: &Map) -> Result<()> {
+    let files = [("map.csv", map_csv(map)), ("map.json", results::text(map))];
+    folder.fill(files, [("map.svg", tongues(map))])
 }
 
 /// Largest number of multipliers named in the picture.

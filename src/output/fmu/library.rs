@@ -5,7 +5,7 @@ use std::ffi::{OsStr, OsString};
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, usage};
 use crate::output::folder::fault;
 
 /// File name of the library.
@@ -55,10 +55,10 @@ impl Libraries {
         let path = path(std::env::var_os(VARIABLE), &program, &programs)?;
         let own = read(&path)?;
         if !own.windows(MARK.len()).any(|part| part == MARK.as_bytes()) {
-            return Err(Error::Usage(format!(
+            return usage(format!(
                 "--fmu: {} belongs to another version of slcbeam. Build it again: cargo build --release --package slcbeam-fmu",
                 path.display()
-            )));
+            ));
         }
         let mut folders = loaded();
         folders.extend(path.parent().map(Path::to_owned));

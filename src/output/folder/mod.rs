@@ -13,7 +13,7 @@ use std::path::{Path, PathBuf};
 use super::kind::FolderKind;
 use super::uncertainty::UNCERTAINTY;
 use crate::case::{CaseText, is_table};
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, usage};
 pub(crate) use atomic_file::{
     AtomicFile, Wait, at_once, create, damaged, entries, name_of, open, put_whole, result, text_of, unlink,
 };
@@ -157,10 +157,10 @@ impl ResultFolder {
             } else {
                 "does not exist"
             };
-            return Err(Error::Usage(format!(
+            return usage(format!(
                 "{} {what}; run without --resume, with /time/checkpoint_interval_s in the case",
                 dir.display()
-            )));
+            ));
         }
         let mut folder = Self::claim(dir, FolderKind::Run, false)?;
         folder.origin.stays = true;
@@ -186,47 +186,52 @@ impl ResultFolder {
     }
 
     /// Writes files, each as [`ResultFolder::write`], together with laid files; waits for the disk once.
-    fn write_all<T: AsRef<[u8]>>(&self, files: &[(&str, T)]) -> Result<Vec<PathBuf>> {
+    fn write_all<T: AsRef<[u8]>>(&self, files: &[(&str, T)]) -> Result<()> {
         self.record_origin()?;
         let fill =
             |(name, bytes): &(&str, T)| AtomicFile::fill(&self.path(name), |file| file.write_all(bytes.as_ref()));
         let parts = files.iter().map(fill).collect::<Result<Vec<_>>>()?;
         let laid = self.laid();
         at_once(parts.iter().chain(&laid).map(AtomicFile::wait).collect())?;
-        parts.into_iter().try_for_each(|part| part.name().map(|_| ()))?;
-        Ok(files.iter().map(|(name, _)| self.path(name)).collect())
+        parts.into_iter().try_for_each(|part| part.name().map(|_| ()))
     }
 
     /// Writes all files of a result without a run in place of an older one: numbers, the file that identifies the kind, then pictures.
-    /// Returns their paths. If a picture cannot be written, the numbers stay. Page and pictures of an older result never remain beside new
-    /// numbers.
-    pub fn fill<T: AsRef<[u8]>>(&mut self, files: Vec<(&str, T)>) -> Result<Vec<PathBuf>> {
+    /// If a picture cannot be written, the numbers stay. Page and pictures of an older result never remain beside new numbers.
+    pub fn fill<'n, T: AsRef<[u8]>>(
+        &mut self,
+        files: impl IntoIterator<Item = (&'n str, T)>,
+        pictures: impl IntoIterator<Item = (&'n str, Option<String>)>,
+    ) -> Result<()> {
         if self.older.is_some_and(|older| older != self.kind) {
             self.clear()?;
         }
-        let (pictures, numbers): (Vec<_>, Vec<_>) = files.into_iter().partition(|f| f.0.ends_with(".svg"));
-        let (sign, tables): (Vec<_>, Vec<_>) = numbers.into_iter().partition(|f| f.0 == self.kind.sign());
+        let (sign, tables): (Vec<_>, Vec<_>) = files.into_iter().partition(|f| f.0 == self.kind.sign());
         let kept = |name: &str| tables.iter().chain(&sign).any(|f| f.0 == name);
         for name in self.kind.files().into_iter().filter(|name| !kept(name)) {
             self.remove(name)?;
         }
-        let mut written = self.write_all(&tables)?;
-        written.extend(self.write_all(&sign)?);
+        self.write_all(&tables)?;
+        self.write_all(&sign)?;
         self.secure()?;
         self.older = Some(self.kind);
         self.remove(REPORT)?;
-        written.extend(self.write_all(&pictures)?);
-        self.secure()?;
-        Ok(written)
+        let drawn = pictures.into_iter().filter_map(|(name, text)| Some((name, text?)));
+        self.write_all(&drawn.collect::<Vec<_>>())?;
+        self.secure()
     }
 
     /// Writes all files of a result without a run, with its case, as [`ResultFolder::fill`].
-    pub fn fill_with(&mut self, case: &CaseText, mut files: Vec<(&str, String)>) -> Result<Vec<PathBuf>> {
+    pub fn fill_with(
+        &mut self,
+        case: &CaseText,
+        mut files: Vec<(&str, String)>,
+        picture: (&str, Option<String>),
+    ) -> Result<()> {
         files.push((CASE, case.json.clone()));
         self.write_tables(case)?;
-        let written = self.fill(files)?;
-        self.remove_other_tables(case)?;
-        Ok(written)
+        self.fill(files, [picture])?;
+        self.remove_other_tables(case)
     }
 
     /// Writes a result with a second case of this name, whose tables are stored beside those of its own, as [`ResultFolder::fill_with`].
@@ -235,12 +240,13 @@ impl ResultFolder {
         own: &CaseText,
         (name, other): (&'static str, &CaseText),
         mut files: Vec<(&str, String)>,
+        picture: (&str, Option<String>),
     ) -> Result<()> {
         files.push((name, other.json.clone()));
         let mut both = own.clone();
         let new = |table: &&(String, String)| own.tables.iter().all(|(name, _)| *name != table.0);
         both.tables.extend(other.tables.iter().filter(new).cloned());
-        self.fill_with(&both, files).map(|_| ())
+        self.fill_with(&both, files, picture)
     }
 
     /// Removes a file, if it exists.

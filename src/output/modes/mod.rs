@@ -5,7 +5,6 @@ mod picture;
 mod table;
 
 use std::io;
-use std::path::PathBuf;
 
 use nalgebra::Complex;
 use zip::ZipWriter;
@@ -264,15 +263,13 @@ fn with_bands(mut modes: Vec<kept::ModeRecord>, bands: &Bands) -> Vec<kept::Mode
 }
 
 /// Writes the files into a folder; other files in it stay.
-pub fn write(folder: &mut ResultFolder, report: &Report) -> Result<Vec<PathBuf>> {
+pub fn write(folder: &mut ResultFolder, report: &Report) -> Result<()> {
     let arrays = pack(report.found).map_err(|e| fault("write", &folder.path(ARRAYS), e))?;
-    let mut files = vec![
-        (CSV, csv(report).into_bytes()),
-        (JSON, json(report).into_bytes()),
-        (ARRAYS, arrays),
-    ];
-    files.extend(picture::drawn(report).map(|text| (PICTURE, text.into_bytes())));
-    folder.fill(files)
+    let texts = [(CSV, csv(report)), (JSON, json(report))].map(|(name, text)| (name, text.into_bytes()));
+    folder.fill(
+        texts.into_iter().chain([(ARRAYS, arrays)]),
+        [(PICTURE, picture::drawn(report))],
+    )
 }
 
 /// Arrays mode × place. The displacement of a mode is `u1_amplitude_m cos(ω t + u1_phase_rad) e^{σ t}`.

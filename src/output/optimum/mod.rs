@@ -33,9 +33,9 @@ pub const BEST: &str = "optimum-case.json";
 /// # Errors
 /// A file cannot be written.
 pub fn write(folder: &mut ResultFolder, problem: &OptimizationProblem, found: &OptimizedCase) -> Result<()> {
-    let mut files = vec![(CSV, table(problem, found)), (JSON, results::text(&found.optimum))];
-    files.extend(drawn(problem, found).map(|text| (PICTURE, text)));
-    folder.fill_with_both(&problem.case.written(), (BEST, &found.case.written()), files)
+    let files = vec![(CSV, table(problem, found)), (JSON, results::text(&found.optimum))];
+    let (picture, best) = ((PICTURE, drawn(problem, found)), found.case.written());
+    folder.fill_with_both(&problem.case.written(), (BEST, &best), files, picture)
 }
 
 fn table(problem: &OptimizationProblem, found: &OptimizedCase) -> String {

@@ -3,7 +3,6 @@
 mod energies;
 
 use std::fmt::Write as _;
-use std::path::PathBuf;
 
 pub use energies::{energies, headings as energy_headings, shown as energy_shown};
 
@@ -145,10 +144,9 @@ pub fn describe(found: &CyclePath) -> String {
 }
 
 /// Writes the files of a sweep into a folder.
-pub fn write(folder: &mut ResultFolder, found: &CyclePath) -> Result<Vec<PathBuf>> {
-    let mut files = vec![("sweep.csv", csv(found)), ("sweep.json", results::text(found))];
-    files.extend(picture(found).map(|text| ("sweep.svg", text)));
-    folder.fill(files)
+pub fn write(folder: &mut ResultFolder, found: &CyclePath) -> Result<()> {
+    let files = [("sweep.csv", csv(found)), ("sweep.json", results::text(found))];
+    folder.fill(files, [("sweep.svg", picture(found))])
 }
 
 /// Picture of the cycles along the parameter, one panel per quantity. Lines are dashed beside unstable cycles.

@@ -15,7 +15,7 @@ use ttf_parser::{Face, GlyphId};
 use super::canvas::{Drawing, DrawnShape, LineStyle, TextAnchor, TextStyle};
 use super::colour::Colour;
 use super::style::{Rise, runs};
-use crate::error::{Error, Result, visible};
+use crate::error::{Error, Result, usage, visible};
 
 const LIBERATION: &[u8] = include_bytes!("font/LiberationSans-Regular.ttf");
 
@@ -52,9 +52,7 @@ impl PdfFont {
         let known = Face::parse(&bytes, 0).ok().filter(|face| face.tables().glyf.is_some());
         let Some(face) = known else {
             let path = path.display();
-            return Err(Error::Usage(format!(
-                "--font {path}: expected a TrueType font (.ttf) for a PDF"
-            )));
+            return usage(format!("--font {path}: expected a TrueType font (.ttf) for a PDF"));
         };
         let named = face
             .names()
@@ -111,11 +109,11 @@ impl Drawing {
         };
         let content = self.content(&mut glyphs);
         if let Some(c) = glyphs.missing.first() {
-            return Err(Error::Usage(format!(
+            return usage(format!(
                 "the font {} of the PDF has no sign for '{c}'; name a TrueType font with --font FILE.ttf, choose another --label, or write \
                  an SVG",
                 font.name
-            )));
+            ));
         }
         let file = subset(&font.bytes, 0, &glyphs.remapper).map_err(|e| unreadable(e.to_string()))?;
         Ok(self.assembled(&content, &glyphs, &font.name, &file))

@@ -21,7 +21,7 @@ use super::plot::canvas::Drawing;
 use super::plot::picture::{Panel, Picture, PictureAxis};
 use super::plot::style::{POINTS_PER_MM, PictureStyle};
 use super::plot::{extent, width_of};
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, usage};
 use table::ResultTable;
 
 /// Height of a single panel relative to its width, and of one of several.
@@ -124,12 +124,12 @@ pub fn panels(results: &[PathBuf], asked: &PictureRequest) -> Result<Vec<Quantit
             [] => {
                 let table = ResultTable::open(dir)?;
                 if let Some((name, before)) = first.as_ref().filter(|(_, before)| !before.is_like(&table)) {
-                    return Err(Error::Usage(format!(
+                    return usage(format!(
                         "{name} has a result of `slcbeam {}`, {} one of `slcbeam {}`: results of one kind share a picture; draw them apart",
                         before.command(),
                         dir.display(),
                         table.command()
-                    )));
+                    ));
                 }
                 let quantities = match asked.quantities.as_slice() {
                     [] => table.usual()?,
@@ -165,10 +165,10 @@ pub fn panels(results: &[PathBuf], asked: &PictureRequest) -> Result<Vec<Quantit
         panel.curves.retain(drawn);
     }
     match all.iter().find(|panel| panel.curves.is_empty()) {
-        Some(panel) => Err(Error::Usage(format!(
+        Some(panel) => usage(format!(
             "{} over {}: nothing to draw within this range",
             panel.y.0, panel.x.0
-        ))),
+        )),
         None => Ok(all),
     }
 }
@@ -182,16 +182,16 @@ fn labels(results: &[PathBuf], given: &[String]) -> Result<Vec<String>> {
             label if given[..k].contains(label) => "is the name of two results",
             _ => continue,
         };
-        return Err(Error::Usage(format!(
+        return usage(format!(
             "--label {label:?}: {why}; each result needs a name of its own in one line"
-        )));
+        ));
     }
     if !given.is_empty() && given.len() != results.len() {
-        return Err(Error::Usage(format!(
+        return usage(format!(
             "--label: {} for {} results; give one to each, in their order",
             given.len(),
             results.len()
-        )));
+        ));
     }
     if !given.is_empty() || results.len() < 2 {
         return Ok(if given.is_empty() {
@@ -228,10 +228,10 @@ fn together(all: Vec<QuantityPanel>) -> Result<QuantityPanel> {
     let first = one.y.clone();
     for mut panel in panels {
         if panel.y.1 != first.1 {
-            return Err(Error::Usage(format!(
+            return usage(format!(
                 "--together: {} has the unit {}, {} has {}; quantities of one panel have one unit",
                 first.0, first.1, panel.y.0, panel.y.1
-            )));
+            ));
         }
         one.y.0 = String::new();
         let own = std::mem::take(&mut panel.curves);
@@ -270,10 +270,10 @@ pub fn drawing(
     }
     let height = sheet.1 * style.scale / POINTS_PER_MM;
     if height > MOST_MM {
-        return Err(Error::Usage(format!(
+        return usage(format!(
             "--quantity: {} panels need a height of {height:.0} mm, {MOST_MM} mm at most; draw fewer, or those of one unit with --together",
             all.len()
-        )));
+        ));
     }
     if size.0 < LEAST || size.1 < LEAST {
         let (side, missing) = match size.0 < LEAST {
@@ -283,9 +283,9 @@ pub fn drawing(
                 ("height", (sheet.1 + room) * style.scale / POINTS_PER_MM)
             }
         };
-        return Err(Error::Usage(format!(
+        return usage(format!(
             "--{side}: the labels leave no room for the curves; at least {missing:.0} mm are needed, or a smaller --font-size"
-        )));
+        ));
     }
     let sheet = PictureStyle {
         sheet: Some((sheet.0 * style.scale, sheet.1 * style.scale)),

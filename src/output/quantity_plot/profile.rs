@@ -6,7 +6,7 @@ use super::names::{field, for_readers};
 use super::{NamedCurve, QuantityPanel};
 use crate::case::nearest;
 use crate::discrete::quantities::{BeamField, FieldAxis, PlacedNodes};
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, usage};
 use crate::output::arrays::TIMES;
 use crate::output::folder::{FIELDS, fault, open};
 use crate::output::kind::FolderKind;
@@ -67,18 +67,18 @@ impl Rows {
 fn nearest_of(all: &[f64], wanted: &[f64], words: &str, unit: &str) -> Result<Vec<usize>> {
     let shown = |x: f64| trimmed(&quantity(x, unit, 4));
     let (Some(first), Some(last)) = (all.first(), all.last()) else {
-        return Err(Error::Usage(format!("--at: the result has no {words}")));
+        return usage(format!("--at: the result has no {words}"));
     };
     let room = 1e-9 * (last - first).abs();
     let mut found = vec![];
     for at in wanted {
         if !(first.min(*last) - room..=last.max(*first) + room).contains(at) {
-            return Err(Error::Usage(format!(
+            return usage(format!(
                 "--at {}: the result has {words} from {} to {}",
                 significant(*at, 6),
                 shown(*first),
                 shown(*last)
-            )));
+            ));
         }
         let far = |k: &usize| (all[*k] - at).abs();
         found.extend((0..all.len()).min_by(|a, b| far(a).total_cmp(&far(b))));

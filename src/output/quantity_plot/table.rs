@@ -4,7 +4,7 @@ use std::path::Path;
 
 use crate::case::nearest;
 use crate::discrete::quantities::probes::key;
-use crate::error::{Error, Result};
+use crate::error::{Result, usage};
 use crate::output::folder::{HISTORY, SUMMARY, fault, open};
 use crate::output::kind::FolderKind;
 use crate::output::summary;
@@ -127,12 +127,12 @@ impl<'a> ResultTable<'a> {
         let known = table_of(kind);
         let path = dir.join(known.file);
         if !path.is_file() {
-            return Err(Error::Usage(format!(
+            return usage(format!(
                 "{}: the result of `slcbeam {}` has no {}, whose columns could be drawn",
                 dir.display(),
                 kind.command(),
                 known.file
-            )));
+            ));
         }
         if known.file == HISTORY && dir.join(SUMMARY).is_file() {
             summary::verify_table(dir, HISTORY, &summary::read(dir)?)?;
@@ -197,19 +197,19 @@ impl<'a> ResultTable<'a> {
             let contents = if column.empty { "no values" } else { "text, not numbers" };
             return match column.text {
                 false => Ok(k),
-                true => Err(Error::Usage(format!(
+                true => usage(format!(
                     "--quantity {name}: this column of {} has {contents}",
                     self.known.file
-                ))),
+                )),
             };
         }
         let (dir, list) = (self.dir.display(), shell_word(self.dir));
         let near = nearest(name, self.numbers().map(|column| column.name.as_str()));
         let near = near.map_or_else(String::new, |near| format!("; did you mean {near}?"));
-        Err(Error::Usage(format!(
+        usage(format!(
             "--quantity {name}: {dir}, a result of `slcbeam {}`, has no such column{near}; `slcbeam plot {list} --list` prints all names",
             self.kind.command()
-        )))
+        ))
     }
 
     /// Usual abscissa.
@@ -245,13 +245,13 @@ impl<'a> ResultTable<'a> {
             [] => String::new(),
             pictures => format!("its picture is {} in that folder; ", pictures.join(", ")),
         };
-        Err(Error::Usage(format!(
+        usage(format!(
             "{}: the result of `slcbeam {}` has no usual quantity; {has}--quantity draws columns of {}, and `slcbeam plot {dir} --list` \
              prints their names",
             self.dir.display(),
             self.kind.command(),
             self.known.file
-        )))
+        ))
     }
 
     fn main(&self) -> Vec<usize> {

@@ -7,7 +7,7 @@ use serde_json::{Value, json};
 
 use super::{FolderKind, Page, WrittenPage, base64, cells, page, warnings};
 use crate::discrete::quantities::{Observable, QuantityRole};
-use crate::error::{Error, Result};
+use crate::error::{Result, usage};
 use crate::output::folder::{REPORT, fault, replace_alike};
 use crate::output::numbers::{percent, quantity};
 use crate::study::compare::difference::Difference;
@@ -94,10 +94,10 @@ fn begun(label: &str, name: String) -> Page {
 
 fn put(page: &Page, dir: &Path) -> Result<WrittenPage> {
     if FolderKind::find("report on", dir).is_ok() {
-        return Err(Error::Usage(format!(
+        return usage(format!(
             "--out {}: the folder contains a result whose page would be overwritten; name another folder",
             dir.display()
-        )));
+        ));
     }
     fs::create_dir_all(dir).map_err(|e| fault("make", dir, e))?;
     let path = dir.join(REPORT);

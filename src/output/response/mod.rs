@@ -3,7 +3,6 @@
 mod picture;
 
 use std::fmt::Write as _;
-use std::path::PathBuf;
 
 pub use self::picture::overlay;
 use self::picture::{nyquist, picture};
@@ -302,12 +301,13 @@ fn sidebands(found: &ResponseRecord) -> String {
 ///
 /// # Errors
 /// A file cannot be written.
-pub fn write(folder: &mut ResultFolder, found: &ResponseRecord) -> Result<Vec<PathBuf>> {
-    let mut files = vec![(CSV, csv(found)), (JSON, results::text(found))];
-    for (name, picture) in [(PICTURE, picture(found)), (NYQUIST, nyquist(found))] {
-        files.extend(picture.and_then(|picture| picture.svg()).map(|text| (name, text)));
-    }
-    folder.fill(files)
+pub fn write(folder: &mut ResultFolder, found: &ResponseRecord) -> Result<()> {
+    let files = [(CSV, csv(found)), (JSON, results::text(found))];
+    let pictures = [(PICTURE, picture(found)), (NYQUIST, nyquist(found))];
+    folder.fill(
+        files,
+        pictures.map(|(name, picture)| (name, picture.and_then(|picture| picture.svg()))),
+    )
 }
 
 /// Table of the peaks of several results.

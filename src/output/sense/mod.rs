@@ -2,8 +2,6 @@
 
 mod text;
 
-use std::path::PathBuf;
-
 use super::folder::ResultFolder;
 use super::numbers::shortest;
 use super::plot::canvas::LineStyle;
@@ -32,16 +30,11 @@ const MOST: usize = 6;
 ///
 /// # Errors
 /// A file cannot be written.
-pub fn write(folder: &mut ResultFolder, found: &Sensed) -> Result<Vec<PathBuf>> {
+pub fn write(folder: &mut ResultFolder, found: &Sensed) -> Result<()> {
     let mut files = vec![(JSON, results::text(found))];
-    if !found.rows.is_empty() {
-        files.push((CSV, csv(found)));
-    }
-    if !found.choice.is_empty() {
-        files.push((SENSORS, sensors(found)));
-    }
-    files.extend(drawn(found).map(|text| (PICTURE, text)));
-    folder.fill(files)
+    files.extend((!found.rows.is_empty()).then(|| (CSV, csv(found))));
+    files.extend((!found.choice.is_empty()).then(|| (SENSORS, sensors(found))));
+    folder.fill(files, [(PICTURE, drawn(found))])
 }
 
 /// Text of `sense.csv`; a cell is empty if its value is not determined or was not measured.

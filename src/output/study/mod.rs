@@ -10,8 +10,6 @@ mod picture;
 mod table;
 mod text;
 
-use std::path::PathBuf;
-
 use super::folder::ResultFolder;
 use crate::error::Result;
 use crate::results;
@@ -34,8 +32,6 @@ pub fn json(study: &Study) -> String {
 }
 
 /// Writes the files into a folder; other files in it stay.
-pub fn write(folder: &mut ResultFolder, study: &Study) -> Result<Vec<PathBuf>> {
-    let mut files = vec![(CSV, csv(study)), (JSON, json(study))];
-    files.extend(draw(study).map(|text| (PICTURE, text)));
-    folder.fill(files)
+pub fn write(folder: &mut ResultFolder, study: &Study) -> Result<()> {
+    folder.fill([(CSV, csv(study)), (JSON, json(study))], [(PICTURE, draw(study))])
 }

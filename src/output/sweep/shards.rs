@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 use super::{JOURNAL, JournalSummary, PLAN};
-use crate::error::{Error, Result};
+use crate::error::{Result, usage};
 use crate::output::folder::{ResultFolder, result};
 use crate::output::kind::FolderKind;
 use crate::output::numbers::significant;
@@ -49,12 +49,12 @@ pub fn read(dirs: &[PathBuf]) -> Result<Vec<SweepPart>> {
         if let Some(first) = all.first()
             && let Some(why) = plan.whole().difference(&first.plan.whole())
         {
-            return Err(Error::Usage(format!(
+            return usage(format!(
                 "{} and {} are parts of different sweeps: {} (here the first, there the second)",
                 dir.display(),
                 first.dir.display(),
                 why
-            )));
+            ));
         }
         all.push(SweepPart { dir: dir.clone(), plan });
     }
@@ -126,14 +126,14 @@ fn agree(all: &[(&Path, &JournalSummary)]) -> Result<()> {
                     significant(x, 7)
                 }
             };
-            return Err(Error::Usage(format!(
+            return usage(format!(
                 "design {number} is there twice, and its rows differ: {name} is {} in {} and {} in {}; merge only one of them, or compute one \
                  again",
                 text(a),
                 all[first].0.display(),
                 text(b),
                 dir.display()
-            )));
+            ));
         }
     }
     Ok(())

@@ -1,7 +1,7 @@
 //! First gaps between the waves of a beam whose cells repeat.
 
-use super::derivatives::{FigureSlopes, GatheredDerivatives};
-use super::{Analysis, AnalysisOutcome, AnalysisRequest, RunCase, accurate};
+use super::derivatives::GatheredDerivatives;
+use super::{Analysis, AnalysisOutcome, AnalysisRequest, FoundSlopes, RunCase, StopCheck, accurate};
 use crate::case::Case;
 use crate::case::parameter::{Parameter, STEPS};
 use crate::discrete::System;
@@ -25,7 +25,7 @@ impl Analysis for BandsAnalysis {
         Lattice::new(case).map(|_| ())
     }
 
-    fn figures(&self, case: &Case, ask: AnalysisRequest, _: &dyn Fn() -> bool, _: RunCase) -> Result<AnalysisOutcome> {
+    fn figures(&self, case: &Case, ask: AnalysisRequest, _: StopCheck, _: RunCase) -> Result<AnalysisOutcome> {
         let Some(asked) = ask.accuracy else {
             return Ok(of_bands(&lowest(case, ask.meshes)?));
         };
@@ -45,13 +45,7 @@ impl Analysis for BandsAnalysis {
     }
 
     /// Edges of gaps at changed values of each parameter, differenced to fourth order; each edge is found again near the present one.
-    fn derivatives(
-        &self,
-        case: &Case,
-        parameters: &[Parameter],
-        _: Option<&System>,
-        _: &dyn Fn() -> bool,
-    ) -> Result<(AnalysisOutcome, FigureSlopes)> {
+    fn derivatives(&self, case: &Case, parameters: &[Parameter], _: Option<&System>, _: StopCheck) -> FoundSlopes {
         let found = lowest(case, false)?;
         let gaps = named(&found);
         let mut all = GatheredDerivatives::new(parameters.len());

@@ -1,8 +1,8 @@
 //! Steady cycles.
 
-use super::derivatives::{FigureSlopes, of_summary, until};
+use super::derivatives::{of_summary, until};
 use super::power::{self, POWERS};
-use super::{Analysis, AnalysisOutcome, AnalysisRequest, RunCase, accurate, errors, run};
+use super::{Analysis, AnalysisOutcome, AnalysisRequest, FoundSlopes, RunCase, StopCheck, accurate, errors, run};
 use crate::case::Case;
 use crate::case::parameter::Parameter;
 use crate::discrete::System;
@@ -31,7 +31,7 @@ impl Analysis for Periodic {
         }
     }
 
-    fn figures(&self, case: &Case, ask: AnalysisRequest, _: &dyn Fn() -> bool, _: RunCase) -> Result<AnalysisOutcome> {
+    fn figures(&self, case: &Case, ask: AnalysisRequest, _: StopCheck, _: RunCase) -> Result<AnalysisOutcome> {
         cycle(case, ask)
     }
 
@@ -47,13 +47,7 @@ impl Analysis for Periodic {
         allowed(case, &PeriodicScene::new(case, None)?, parameters)
     }
 
-    fn derivatives(
-        &self,
-        case: &Case,
-        parameters: &[Parameter],
-        _: Option<&System>,
-        stop: &dyn Fn() -> bool,
-    ) -> Result<(AnalysisOutcome, FigureSlopes)> {
+    fn derivatives(&self, case: &Case, parameters: &[Parameter], _: Option<&System>, stop: StopCheck) -> FoundSlopes {
         let scene = PeriodicScene::new(case, None)?;
         scene.held(&case.name)?;
         let first = shoot(&scene, None).map_err(fault)?;
@@ -83,10 +77,7 @@ impl Analysis for Periodic {
 /// Computes the steady cycle, or the self-oscillation of a case whose signals become constant.
 fn cycle(case: &Case, ask: AnalysisRequest) -> Result<AnalysisOutcome> {
     let mut of = |case: &Case| numbers::of_cycle(case, 1, &StopFlag::default());
-    let refined = ask
-        .accuracy
-        .map(|accuracy| refine::refine(case, accuracy, true, &mut of))
-        .transpose()?;
+    let refined = refine::if_asked(case, ask.accuracy, true, &mut of)?;
     let case = refined.as_ref().map_or(case, |(chosen, _)| chosen);
     let (scene, first, _) = subharmonic::find(case, 1)?;
     let Settled {

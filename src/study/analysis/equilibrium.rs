@@ -1,7 +1,7 @@
 //! Equilibria under the loads at the end of a case.
 
-use super::derivatives::{FigureSlopes, GatheredDerivatives, until};
-use super::{Analysis, AnalysisOutcome, AnalysisRequest, RunCase, accurate, errors};
+use super::derivatives::{GatheredDerivatives, until};
+use super::{Analysis, AnalysisOutcome, AnalysisRequest, FoundSlopes, RunCase, StopCheck, accurate, errors};
 use crate::case::Case;
 use crate::case::parameter::Parameter;
 use crate::discrete::System;
@@ -23,13 +23,7 @@ impl Analysis for EquilibriumAnalysis {
         equilibrium::system(case, case.time.end_s).map(|_| ())
     }
 
-    fn figures(
-        &self,
-        case: &Case,
-        ask: AnalysisRequest,
-        stop: &dyn Fn() -> bool,
-        _: RunCase,
-    ) -> Result<AnalysisOutcome> {
+    fn figures(&self, case: &Case, ask: AnalysisRequest, stop: StopCheck, _: RunCase) -> Result<AnalysisOutcome> {
         at_rest(case, ask, stop)
     }
 
@@ -39,13 +33,7 @@ impl Analysis for EquilibriumAnalysis {
         Ok(keys.filter(|key| key != "load_factor").collect())
     }
 
-    fn derivatives(
-        &self,
-        case: &Case,
-        parameters: &[Parameter],
-        _: Option<&System>,
-        stop: &dyn Fn() -> bool,
-    ) -> Result<(AnalysisOutcome, FigureSlopes)> {
+    fn derivatives(&self, case: &Case, parameters: &[Parameter], _: Option<&System>, stop: StopCheck) -> FoundSlopes {
         let options = at_the_end(case);
         let path = equilibrium::follow(case, &options, &mut until(stop))?;
         if let Some(fault) = path.fault {
@@ -80,13 +68,10 @@ fn at_the_end(case: &Case) -> EquilibriumOptions {
 }
 
 /// Computes the equilibrium under the loads at the end.
-fn at_rest(case: &Case, ask: AnalysisRequest, stop: &dyn Fn() -> bool) -> Result<AnalysisOutcome> {
+fn at_rest(case: &Case, ask: AnalysisRequest, stop: StopCheck) -> Result<AnalysisOutcome> {
     let options = at_the_end(case);
     let mut of = |case: &Case| numbers::of_equilibrium(case, &options);
-    let refined = ask
-        .accuracy
-        .map(|accuracy| refine::refine(case, accuracy, false, &mut of))
-        .transpose()?;
+    let refined = refine::if_asked(case, ask.accuracy, false, &mut of)?;
     let case = refined.as_ref().map_or(case, |(chosen, _)| chosen);
     let path = equilibrium::follow(case, &options, &mut until(stop))?;
     let system = equilibrium::system(case, options.at_s)?;

@@ -52,6 +52,12 @@ pub const ACCURACY: &str = "accuracy_reached";
 /// Function that runs a case in time.
 pub type RunCase<'a> = &'a dyn Fn(&Case) -> Result<Outcome>;
 
+/// Returns true if a computation must stop.
+pub type StopCheck<'a> = &'a dyn Fn() -> bool;
+
+/// Figures with their derivatives.
+pub type FoundSlopes = Result<(AnalysisOutcome, FigureSlopes)>;
+
 /// A computation of a case that yields figures.
 pub trait Analysis: Sync {
     /// Rejects a case that the analysis cannot compute, before anything is computed.
@@ -64,13 +70,7 @@ pub trait Analysis: Sync {
     ///
     /// # Errors
     /// Those of the command.
-    fn figures(
-        &self,
-        case: &Case,
-        ask: AnalysisRequest,
-        stop: &dyn Fn() -> bool,
-        run: RunCase,
-    ) -> Result<AnalysisOutcome>;
+    fn figures(&self, case: &Case, ask: AnalysisRequest, stop: StopCheck, run: RunCase) -> Result<AnalysisOutcome>;
 
     /// Names of the figures of a case.
     ///
@@ -98,8 +98,8 @@ pub trait Analysis: Sync {
         case: &Case,
         parameters: &[Parameter],
         alike: Option<&System>,
-        stop: &dyn Fn() -> bool,
-    ) -> Result<(AnalysisOutcome, FigureSlopes)>;
+        stop: StopCheck,
+    ) -> FoundSlopes;
 
     /// Error code of a case without figures.
     fn fault(&self) -> Code;
@@ -204,7 +204,7 @@ pub struct AnalysisRequest<'a> {
 
 /// Computes the figures of a case; `run` runs it in time, if the analysis needs that. `None` if `stop` became true
 /// meanwhile.
-pub fn found(case: &Case, ask: AnalysisRequest, stop: &dyn Fn() -> bool, run: RunCase) -> Option<AnalysisOutcome> {
+pub fn found(case: &Case, ask: AnalysisRequest, stop: StopCheck, run: RunCase) -> Option<AnalysisOutcome> {
     let found = ask.what.analysis().figures(case, ask, stop, run);
     if stop() {
         return None;
@@ -216,7 +216,7 @@ pub fn found(case: &Case, ask: AnalysisRequest, stop: &dyn Fn() -> bool, run: Ru
 pub fn stored(
     evaluations: &Evaluations,
     key: &impl Serialize,
-    stop: &dyn Fn() -> bool,
+    stop: StopCheck,
     found: impl FnOnce() -> Option<AnalysisOutcome>,
 ) -> Option<AnalysisOutcome> {
     let apart = |mut found: AnalysisOutcome| {
@@ -231,7 +231,7 @@ pub fn stored(
 ///
 /// # Errors
 /// Those of [`companion::run`].
-pub fn run(case: &Case, ask: AnalysisRequest, stop: &dyn Fn() -> bool) -> Result<Outcome> {
+pub fn run(case: &Case, ask: AnalysisRequest, stop: StopCheck) -> Result<Outcome> {
     let wait = Cell::new(0_u32);
     let hook = |_: &Progress| {
         wait.set(wait.get() + 1);

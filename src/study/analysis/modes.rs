@@ -2,8 +2,8 @@
 
 use std::f64::consts::TAU;
 
-use super::derivatives::{FigureSlopes, GatheredDerivatives};
-use super::{Analysis, AnalysisOutcome, AnalysisRequest, RunCase, reached};
+use super::derivatives::GatheredDerivatives;
+use super::{Analysis, AnalysisOutcome, AnalysisRequest, FoundSlopes, RunCase, StopCheck, reached};
 use crate::case::Case;
 use crate::case::parameter::Parameter;
 use crate::discrete::System;
@@ -25,7 +25,7 @@ impl Analysis for ModesAnalysis {
         System::new(case).map(|_| ())
     }
 
-    fn figures(&self, case: &Case, ask: AnalysisRequest, _: &dyn Fn() -> bool, _: RunCase) -> Result<AnalysisOutcome> {
+    fn figures(&self, case: &Case, ask: AnalysisRequest, _: StopCheck, _: RunCase) -> Result<AnalysisOutcome> {
         small(case, ask)
     }
 
@@ -35,13 +35,7 @@ impl Analysis for ModesAnalysis {
         Ok((1..=MODES).flat_map(of).collect())
     }
 
-    fn derivatives(
-        &self,
-        case: &Case,
-        parameters: &[Parameter],
-        _: Option<&System>,
-        _: &dyn Fn() -> bool,
-    ) -> Result<(AnalysisOutcome, FigureSlopes)> {
+    fn derivatives(&self, case: &Case, parameters: &[Parameter], _: Option<&System>, _: StopCheck) -> FoundSlopes {
         let (found, _) = swinging(case)?;
         let slopes = modes::differentiate(case, None, &found.about, &found.modes, parameters)?;
         let mut all = GatheredDerivatives::new(parameters.len());
@@ -100,10 +94,7 @@ pub fn lowest(all: &[modes::Mode]) -> Vec<usize> {
 fn small(case: &Case, ask: AnalysisRequest) -> Result<AnalysisOutcome> {
     let (mut all, plan) = swinging(case)?;
     let mut of = |case: &Case| numbers::of_modes(case, None, &plan);
-    let refined = ask
-        .accuracy
-        .map(|accuracy| refine::refine(case, accuracy, false, &mut of))
-        .transpose()?;
+    let refined = refine::if_asked(case, ask.accuracy, false, &mut of)?;
     let case = match &refined {
         None => case,
         Some((chosen, _)) => {

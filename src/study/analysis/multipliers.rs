@@ -1,8 +1,7 @@
 //! Floquet multipliers of cycles, named by the part of the motion that dominates each of them, since their order may
 //! change.
 
-use super::derivatives::FigureSlopes;
-use super::{Analysis, AnalysisOutcome, AnalysisRequest, RunCase};
+use super::{Analysis, AnalysisOutcome, AnalysisRequest, FoundSlopes, RunCase, StopCheck};
 use crate::case::Case;
 use crate::case::parameter::Parameter;
 use crate::discrete::System;
@@ -23,7 +22,7 @@ impl Analysis for Multipliers {
         PeriodicScene::new(case, None)?.held(&case.name)
     }
 
-    fn figures(&self, case: &Case, ask: AnalysisRequest, _: &dyn Fn() -> bool, _: RunCase) -> Result<AnalysisOutcome> {
+    fn figures(&self, case: &Case, ask: AnalysisRequest, _: StopCheck, _: RunCase) -> Result<AnalysisOutcome> {
         multipliers(case, ask)
     }
 
@@ -35,13 +34,7 @@ impl Analysis for Multipliers {
         Err(no_derivatives())
     }
 
-    fn derivatives(
-        &self,
-        _: &Case,
-        _: &[Parameter],
-        _: Option<&System>,
-        _: &dyn Fn() -> bool,
-    ) -> Result<(AnalysisOutcome, FigureSlopes)> {
+    fn derivatives(&self, _: &Case, _: &[Parameter], _: Option<&System>, _: StopCheck) -> FoundSlopes {
         Err(no_derivatives())
     }
 

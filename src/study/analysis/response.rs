@@ -3,8 +3,8 @@
 use nalgebra::Complex;
 use serde::{Deserialize, Serialize};
 
-use super::derivatives::{FigureSlopes, GatheredDerivatives};
-use super::{Analysis, AnalysisOutcome, AnalysisRequest, RunCase, accurate};
+use super::derivatives::GatheredDerivatives;
+use super::{Analysis, AnalysisOutcome, AnalysisRequest, FoundSlopes, RunCase, StopCheck, accurate};
 use crate::case::Case;
 use crate::case::parameter::Parameter;
 use crate::discrete::System;
@@ -170,7 +170,7 @@ impl Analysis for ResponseAnalysis {
         response::outputs(case, &self.input, &self.outputs).map(|_| ())
     }
 
-    fn figures(&self, case: &Case, ask: AnalysisRequest, _: &dyn Fn() -> bool, _: RunCase) -> Result<AnalysisOutcome> {
+    fn figures(&self, case: &Case, ask: AnalysisRequest, _: StopCheck, _: RunCase) -> Result<AnalysisOutcome> {
         let mut of = |case: &Case| self.respond(case).map(|all| self.numbers(&all));
         let Some(asked) = ask.accuracy else {
             let all = self.respond(case)?;
@@ -201,13 +201,7 @@ impl Analysis for ResponseAnalysis {
         Ok(all)
     }
 
-    fn derivatives(
-        &self,
-        case: &Case,
-        parameters: &[Parameter],
-        _: Option<&System>,
-        _: &dyn Fn() -> bool,
-    ) -> Result<(AnalysisOutcome, FigureSlopes)> {
+    fn derivatives(&self, case: &Case, parameters: &[Parameter], _: Option<&System>, _: StopCheck) -> FoundSlopes {
         let own = self.respond(case)?;
         let slopes = differentiate(case, None, &own.found, &self.frequencies, parameters)?;
         let mut all = GatheredDerivatives::new(parameters.len());

@@ -1,7 +1,7 @@
 //! Runs in time.
 
-use super::derivatives::{FigureSlopes, alike_or_own, of_summary, until};
-use super::{Analysis, AnalysisOutcome, AnalysisRequest, RunCase, reached};
+use super::derivatives::{alike_or_own, of_summary, until};
+use super::{Analysis, AnalysisOutcome, AnalysisRequest, FoundSlopes, RunCase, StopCheck, reached};
 use crate::case::Case;
 use crate::case::parameter::Parameter;
 use crate::discrete::System;
@@ -19,7 +19,7 @@ impl Analysis for Run {
         System::new(case).map(|_| ())
     }
 
-    fn figures(&self, case: &Case, _: AnalysisRequest, _: &dyn Fn() -> bool, run: RunCase) -> Result<AnalysisOutcome> {
+    fn figures(&self, case: &Case, _: AnalysisRequest, _: StopCheck, run: RunCase) -> Result<AnalysisOutcome> {
         run(case).map(|outcome| of_run(&outcome.summary))
     }
 
@@ -33,8 +33,8 @@ impl Analysis for Run {
         case: &Case,
         parameters: &[Parameter],
         alike: Option<&System>,
-        stop: &dyn Fn() -> bool,
-    ) -> Result<(AnalysisOutcome, FigureSlopes)> {
+        stop: StopCheck,
+    ) -> FoundSlopes {
         let system = alike_or_own(case, alike)?;
         let outcome = dynamics::run_with(case, system, parameters, &mut FiguresAlone(until(stop)))?;
         let all = of_summary(&outcome.summary, parameters);

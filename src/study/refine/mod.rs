@@ -109,6 +109,19 @@ impl ReferencedNumber {
 /// Numbers by name.
 pub type RefinedNumbers = BTreeMap<String, ReferencedNumber>;
 
+/// [`refine`] if an accuracy is requested.
+///
+/// # Errors
+/// Those of [`refine`].
+pub fn if_asked(
+    case: &Case,
+    asked: Option<f64>,
+    in_time: bool,
+    compute: &mut dyn FnMut(&Case) -> Result<RefinedNumbers>,
+) -> Result<Option<(Case, Accuracy)>> {
+    asked.map(|asked| refine(case, asked, in_time, compute)).transpose()
+}
+
 /// Finds the mesh, and the tolerance if `in_time`, at which every number of `compute` has an estimated relative error below `asked`.
 /// Returns the case with these settings, and the accuracy.
 ///

@@ -1,7 +1,7 @@
 //! Problems with a known solution.
 
 use super::figure::ExactFigure;
-use crate::error::{Error, Result};
+use crate::error::{Result, usage};
 
 /// Function that computes the figures of a row.
 type Work = Box<dyn Fn() -> Result<Vec<ExactFigure>> + Send + Sync>;
@@ -59,8 +59,8 @@ pub fn choose(rows: Vec<SolvedProblem>, part: &str) -> Result<Vec<SolvedProblem>
         .iter()
         .max_by(|a, b| likeness(a).total_cmp(&likeness(b)))
         .map_or("", String::as_str);
-    Err(Error::Usage(format!(
+    usage(format!(
         "no exact result has \"{part}\" in its name; the nearest is \"{nearest}\"\nall: {}",
         names.join(", ")
-    )))
+    ))
 }
