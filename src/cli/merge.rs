@@ -1,11 +1,9 @@
 //! `slcbeam merge`: shards of a sweep joined into one table.
 
-use std::fs;
-use std::path::Path;
 use std::process::ExitCode;
 
 use super::arguments::MergeArguments;
-use super::terminal;
+use super::{compare, terminal};
 use crate::case::{self, CaseText};
 use crate::error::{Result, usage};
 use crate::output::folder::{CASE, ResultFolder, text_of};
@@ -26,7 +24,7 @@ pub fn merge(asked: &MergeArguments) -> Result<ExitCode> {
     };
     let plan = first.plan.whole();
     let dir = asked.place.folder(&plan.case, FolderKind::Designs);
-    if let Some(part) = asked.parts.iter().find(|part| same(part, &dir)) {
+    if let Some(part) = asked.parts.iter().find(|part| compare::same(part, &dir)) {
         return usage(format!(
             "--out {}: {} is one of the shards, whose rows would be overwritten; name another folder",
             dir.display(),
@@ -73,11 +71,6 @@ pub fn merge(asked: &MergeArguments) -> Result<ExitCode> {
         ));
     }
     Ok(ExitCode::from(if lost.is_empty() { 0 } else { INCOMPLETE }))
-}
-
-/// True if two paths lead to one folder.
-fn same(a: &Path, b: &Path) -> bool {
-    matches!((fs::canonicalize(a), fs::canonicalize(b)), (Ok(a), Ok(b)) if a == b)
 }
 
 fn start(folder: &mut ResultFolder, asked: &MergeArguments, plan: &SweepPlan) -> Result<()> {

@@ -59,53 +59,44 @@ pub fn text(of: &FmuContents) -> String {
     let setup = of.setup();
     let some = |text: &str| Some(text.to_owned());
     let number = |x: f64| Some(format!("{x:?}"));
-    let mut variables = vec![element(
-        "Float64",
-        &[
-            ("name", some("time")),
-            ("valueReference", some("0")),
-            ("causality", some("independent")),
-            ("variability", some("continuous")),
-            ("description", some("time")),
-            ("unit", some("s")),
-        ],
-    )];
+    let variable = |place: usize, causality: &str, [name, about, unit]: [&str; 3], numbers: [Option<f64>; 3]| {
+        let [low, high, start] = numbers.map(|number| number.map(|x| format!("{x:?}")));
+        element(
+            "Float64",
+            &[
+                ("name", some(name)),
+                ("valueReference", Some(place.to_string())),
+                ("causality", some(causality)),
+                ("variability", some("continuous")),
+                ("description", some(about)),
+                ("unit", some(unit)),
+                ("min", low),
+                ("max", high),
+                ("start", start),
+            ],
+        )
+    };
+    let mut variables = vec![variable(0, "independent", ["time", "time", "s"], [None; 3])];
     let mut units = BTreeSet::from(["s"]);
     let mut names = vec![];
     for input in &of.inputs {
         units.insert(input.unit());
         names.push(input.name());
         let [low, high] = input.range.map_or([None; 2], |range| range.map(Some));
-        variables.push(element(
-            "Float64",
-            &[
-                ("name", Some(input.name())),
-                ("valueReference", Some(variables.len().to_string())),
-                ("causality", some("input")),
-                ("variability", some("continuous")),
-                ("description", Some(input.about())),
-                ("unit", some(input.unit())),
-                ("min", low.and_then(number)),
-                ("max", high.and_then(number)),
-                ("start", number(input.start)),
-            ],
+        let words = [&input.name(), &input.about(), input.unit()];
+        variables.push(variable(
+            variables.len(),
+            "input",
+            words,
+            [low, high, Some(input.start)],
         ));
     }
     let first = variables.len();
     for output in &of.outputs {
         units.insert(output.unit);
         names.push(output.name.clone());
-        variables.push(element(
-            "Float64",
-            &[
-                ("name", some(&output.name)),
-                ("valueReference", Some(variables.len().to_string())),
-                ("causality", some("output")),
-                ("variability", some("continuous")),
-                ("description", some(&output.about)),
-                ("unit", some(output.unit)),
-            ],
-        ));
+        let words = [&*output.name, &output.about, output.unit];
+        variables.push(variable(variables.len(), "output", words, [None; 3]));
     }
     let known = |unit: &&str| exponents(unit).is_some();
     let definitions: String = units.into_iter().filter(known).filter_map(unit).collect();

@@ -245,14 +245,13 @@ impl PdfContent {
         (fine(x), fine(self.height - y))
     }
 
-    fn fill(&mut self, Colour(r, g, b): Colour) {
-        let [r, g, b] = [r, g, b].map(share);
+    fn fill(&mut self, colour: Colour) {
+        let [r, g, b] = shares(colour);
         self.content.set_fill_rgb(r, g, b);
     }
 
     fn stroke(&mut self, stroke: LineStyle) {
-        let Colour(r, g, b) = stroke.colour;
-        let [r, g, b] = [r, g, b].map(share);
+        let [r, g, b] = shares(stroke.colour);
         let dash = stroke.dash.map(|(dash, gap)| [dash as f32, gap as f32]);
         self.content
             .set_stroke_rgb(r, g, b)
@@ -319,8 +318,7 @@ impl PdfContent {
         };
         self.content.begin_text().set_text_matrix(matrix);
         if words.bold {
-            let Colour(r, g, b) = words.colour;
-            let [r, g, b] = [r, g, b].map(share);
+            let [r, g, b] = shares(words.colour);
             // the font has no bold form: its outline is drawn too
             self.content
                 .set_stroke_rgb(r, g, b)
@@ -344,6 +342,6 @@ impl PdfContent {
 }
 
 /// A component of a color from 0 to 1, with three decimals.
-fn share(x: u8) -> f32 {
-    (1000.0 * f32::from(x) / 255.0).round() / 1000.0
+fn shares(Colour(r, g, b): Colour) -> [f32; 3] {
+    [r, g, b].map(|x| (1000.0 * f32::from(x) / 255.0).round() / 1000.0)
 }

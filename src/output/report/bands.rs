@@ -14,56 +14,37 @@ use crate::results::bands::{BandsRecord, GapRecord, WaveMotion, WaveRecord};
 /// Data of the page.
 pub fn data(place: &Place) -> Result<Page> {
     let (found, mut page) = place.begun::<BandsRecord>(FolderKind::Bands, |found| (&found.case, &found.warnings))?;
-    page.put("label", "Waves of the repeating cell");
     let tone = if found.warnings.is_empty() { "good" } else { "fair" };
-    page.put("status", json!({"word": "finished", "tone": tone, "reason": null}));
     let [from, to] = found.band_hz.map(|hz| significant(hz, 4));
-    page.put(
-        "answer",
-        format!(
-            "Waves from {from} to {to} Hz: {}.",
-            counted(found.gaps.len() as u64, "gap")
-        ),
-    );
+    let gaps = counted(found.gaps.len() as u64, "gap");
     let phase = |wave: &WaveRecord| (wave.attenuation_db.abs() < DRAWN).then(|| wave.real.abs() / PI);
     let loss = |wave: &WaveRecord| Some(wave.attenuation_db.abs()).filter(|decibel| *decibel <= DRAWN);
-    page.put(
-        "charts",
-        json!([
-            chart(
-                &found,
-                "Phase per cell",
-                json!({"name": "phase per cell over π", "unit": "1"}),
-                phase
-            ),
-            chart(
-                &found,
-                "Attenuation per cell",
-                json!({"name": "attenuation per cell [dB]", "unit": "1"}),
-                loss
-            ),
-        ]),
-    );
     let row = |gap: &GapRecord| {
+        let width = gap.relative_width();
         json!([
             gap.motion.name(),
             gap.from_hz,
             gap.to_hz,
-            gap.relative_width(),
+            width,
             gap.deepest_hz,
             gap.attenuation_db
         ])
     };
-    page.put(
-        "table",
-        json!({
+    let [first, last] = found.band_hz;
+    page.fill(json!({
+        "label": "Waves of the repeating cell", "status": {"word": "finished", "tone": tone, "reason": null},
+        "answer": format!("Waves from {from} to {to} Hz: {gaps}."),
+        "charts": [
+            chart(&found, "Phase per cell", json!({"name": "phase per cell over π", "unit": "1"}), phase),
+            chart(&found, "Attenuation per cell", json!({"name": "attenuation per cell [dB]", "unit": "1"}), loss),
+        ],
+        "table": {
             "title": "Gaps",
             "headings": ["motion", "from [Hz]", "to [Hz]", "width [1]", "deepest [Hz]", "attenuation [dB/cell]"],
             "rows": found.gaps.iter().map(row).collect::<Vec<_>>(), "file": CSV,
-        }),
-    );
-    let [from, to] = found.band_hz;
-    page.put("command", format!("slcbeam bands {CASE} --from {from} --to {to}"));
+        },
+        "command": format!("slcbeam bands {CASE} --from {first} --to {last}"),
+    }));
     Ok(page)
 }
 

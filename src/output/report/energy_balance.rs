@@ -33,17 +33,13 @@ pub fn to_json(summary: &Summary, history: &ReportHistory) -> Value {
         "stored": entries(&stored, 1.0),
         "now": now,
         "residual": expected.map(|e| now - e),
-        "relative": finite(summary.balances.energy_residual_relative),
+        "relative": Some(summary.balances.energy_residual_relative).filter(|x| x.is_finite()),
         "columns": {
             "in": names(Group::PutIn), "added": names(Group::Added), "stored": names(Group::Stored), "lost": names(Group::Lost),
             "harvested": names(Group::Harvested), "open": names(Group::Open),
         },
         "others": others(summary),
     })
-}
-
-fn finite(x: f64) -> Option<f64> {
-    x.is_finite().then_some(x)
 }
 
 /// Other balances as text; omits those that are exactly zero because they do not apply.

@@ -2,56 +2,35 @@
 
 use serde_json::{Value, json};
 
-use super::{FolderKind, Page, Place, StoredResult, base64, placed};
+use super::{FolderKind, Page, Place, base64, placed};
 use crate::error::Result;
 use crate::output::folder::CASE;
 use crate::output::numbers::{counted, significant};
-use crate::output::response::{JSON, NYQUIST, PICTURE, Transfer, transfers};
-use crate::results::response::{LinearisedState, ResponseRecord, ResponseShape, ResponseShapes};
+use crate::output::response::{NYQUIST, PICTURE, Transfer, transfers};
+use crate::results::response::{LinearisedState, ResponsePeak, ResponseRecord, ResponseShape, ResponseShapes};
 
 /// Data of the page.
 pub fn data(place: &Place) -> Result<Page> {
-    let StoredResult { result: found, head } = place.result::<ResponseRecord>(JSON)?;
-    let mut page = place.page(FolderKind::Response, &found.case, Some(&head));
-    page.put("label", "Frequency response of small motions");
-    page.warnings.clone_from(&found.warnings);
-    let (word, tone) = match found.warnings.is_empty() {
-        true => ("finished", "good"),
-        false => ("finished", "fair"),
-    };
-    page.put("status", json!({"word": word, "tone": tone, "reason": null}));
+    let (found, mut page) =
+        place.begun::<ResponseRecord>(FolderKind::Response, |found| (&found.case, &found.warnings))?;
+    let tone = if found.warnings.is_empty() { "good" } else { "fair" };
     let outputs: Vec<&str> = found.curves().map(|curve| curve.output.as_str()).collect();
     let peaks: usize = found.curves().map(|curve| curve.peaks.len()).sum();
-    let (first, last) = (found.frequency_hz.first(), found.frequency_hz.last());
-    page.put(
-        "answer",
-        format!(
-            "Response of {} to {} from {} to {} Hz: {}, {}.",
-            outputs.join(", "),
-            found.input,
-            significant(first.copied().unwrap_or(0.0), 4),
-            significant(last.copied().unwrap_or(0.0), 4),
-            counted(peaks as u64, "peak"),
-            counted(found.poles.len() as u64, "pole")
-        ),
-    );
-    page.put("curves", curves(&found));
-    page.put("shapes", found.shapes.as_ref().map(|found| shapes(found, place)));
-    let mut figures = vec![json!({
-        "title": "In the complex plane",
-        "picture": place.picture(NYQUIST),
-        "about": "Real and imaginary part of each response, over its largest amplitude (Nyquist). A lightly damped mode is a circle.",
-    })];
-    if !found.powers.is_empty() {
-        figures.insert(0, json!({
+    let [first, last] = [found.frequency_hz.first(), found.frequency_hz.last()].map(|hz| hz.copied().unwrap_or(0.0));
+    let powers = (!found.powers.is_empty()).then(|| {
+        json!({
             "title": "Amplitude, phase and mean powers",
             "picture": place.picture(PICTURE),
             "about": "Amplitude in decibel: 20 log10 of the output over the input, in SI units. Powers are means over a cycle.",
-        }));
-    }
-    page.put("figures", figures);
+        })
+    });
+    let plane = json!({
+        "title": "In the complex plane",
+        "picture": place.picture(NYQUIST),
+        "about": "Real and imaginary part of each response, over its largest amplitude (Nyquist). A lightly damped mode is a circle.",
+    });
     let rows = found.curves().flat_map(|curve| {
-        let row = |peak: &crate::results::response::ResponsePeak| {
+        let row = |peak: &ResponsePeak| {
             json!([
                 curve.output,
                 peak.frequency_hz,
@@ -62,14 +41,6 @@ pub fn data(place: &Place) -> Result<Page> {
         };
         curve.peaks.iter().map(row).collect::<Vec<_>>()
     });
-    page.put(
-        "table",
-        json!({
-            "title": "Peaks",
-            "headings": ["output", "frequency [Hz]", "amplitude", "phase [deg]", "damping ratio [1]"],
-            "rows": rows.collect::<Vec<_>>(), "file": "response.csv",
-        }),
-    );
     let at = match found.state {
         LinearisedState::Start => String::new(),
         LinearisedState::Equilibrium => format!(" --at {}", found.at_s),
@@ -79,14 +50,22 @@ pub fn data(place: &Place) -> Result<Page> {
             format!(" --about-cycle --harmonics {most}")
         }
     };
-    page.put(
-        "command",
-        format!(
-            "slcbeam response {CASE} --input {} --output {}{at}",
-            found.input,
-            outputs.join(",")
+    page.fill(json!({
+        "label": "Frequency response of small motions", "status": {"word": "finished", "tone": tone, "reason": null},
+        "answer": format!(
+            "Response of {} to {} from {} to {} Hz: {}, {}.",
+            outputs.join(", "), found.input, significant(first, 4), significant(last, 4), counted(peaks as u64, "peak"),
+            counted(found.poles.len() as u64, "pole")
         ),
-    );
+        "curves": curves(&found), "shapes": found.shapes.as_ref().map(|found| shapes(found, place)),
+        "figures": powers.into_iter().chain([plane]).collect::<Vec<_>>(),
+        "table": {
+            "title": "Peaks",
+            "headings": ["output", "frequency [Hz]", "amplitude", "phase [deg]", "damping ratio [1]"],
+            "rows": rows.collect::<Vec<_>>(), "file": "response.csv",
+        },
+        "command": format!("slcbeam response {CASE} --input {} --output {}{at}", found.input, outputs.join(",")),
+    }));
     Ok(page)
 }
 
@@ -127,12 +106,7 @@ fn shapes(found: &ResponseShapes, place: &Place) -> Value {
             page[format!("{name}_phase_rad")] = all(part, |re, im| im.atan2(re));
         }
     }
-    page["bladders"] = json!(
-        found
-            .at
-            .first()
-            .map(|shape| shape.pressure[0].len())
-            .filter(|count| *count > 0)
-    );
+    let bladders = found.at.first().map(|shape| shape.pressure[0].len());
+    page["bladders"] = json!(bladders.filter(|count| *count > 0));
     page
 }
