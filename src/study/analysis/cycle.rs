@@ -31,8 +31,30 @@ impl Analysis for Periodic {
         }
     }
 
+    /// Computes the steady cycle, or the self-oscillation of a case whose signals become constant.
     fn figures(&self, case: &Case, ask: AnalysisRequest, _: StopCheck, _: RunCase) -> Result<AnalysisOutcome> {
-        cycle(case, ask)
+        let mut of = |case: &Case| numbers::of_cycle(case, 1, &StopFlag::default());
+        let refined = refine::if_asked(case, ask.accuracy, true, &mut of)?;
+        let case = refined.as_ref().map_or(case, |(chosen, _)| chosen);
+        let (scene, first, _) = subharmonic::find(case, 1)?;
+        let Settled {
+            case, scene, mut cycle, ..
+        } = settle(case, scene, first)?;
+        let stability = floquet::multipliers(&scene, &mut cycle, MULTIPLIERS);
+        let outcome = record::record(&case, &scene, &cycle, &mut Unrecorded(|_| Control::Continue))?;
+        let summary = &outcome.summary;
+        let mut found = of_cycle(summary, scene.drive.period, cycle.search.work.steps, Some(&stability));
+        if let Some((_, accuracy)) = &refined {
+            accurate(&mut found, accuracy, &|name| name.into());
+            power::share_errors(&mut found);
+        } else if ask.meshes && summary.status == Status::Finished {
+            let here = numbers::of_summary(&case, summary)?;
+            let by_mesh = meshes::judge(&case, &here, &mut of)?;
+            errors(&mut found, &by_mesh, &|name| name.into());
+            power::share_errors(&mut found);
+        }
+        found.warn(&summary.warnings);
+        Ok(found)
     }
 
     fn names(&self, case: &Case) -> Result<Vec<String>> {
@@ -72,32 +94,6 @@ impl Analysis for Periodic {
     fn fault(&self) -> Code {
         Code::NoCycle
     }
-}
-
-/// Computes the steady cycle, or the self-oscillation of a case whose signals become constant.
-fn cycle(case: &Case, ask: AnalysisRequest) -> Result<AnalysisOutcome> {
-    let mut of = |case: &Case| numbers::of_cycle(case, 1, &StopFlag::default());
-    let refined = refine::if_asked(case, ask.accuracy, true, &mut of)?;
-    let case = refined.as_ref().map_or(case, |(chosen, _)| chosen);
-    let (scene, first, _) = subharmonic::find(case, 1)?;
-    let Settled {
-        case, scene, mut cycle, ..
-    } = settle(case, scene, first)?;
-    let stability = floquet::multipliers(&scene, &mut cycle, MULTIPLIERS);
-    let outcome = record::record(&case, &scene, &cycle, &mut Unrecorded(|_| Control::Continue))?;
-    let summary = &outcome.summary;
-    let mut found = of_cycle(summary, scene.drive.period, cycle.search.work.steps, Some(&stability));
-    if let Some((_, accuracy)) = &refined {
-        accurate(&mut found, accuracy, &|name| name.into());
-        power::share_errors(&mut found);
-    } else if ask.meshes && summary.status == Status::Finished {
-        let here = numbers::of_summary(&case, summary)?;
-        let by_mesh = meshes::judge(&case, &here, &mut of)?;
-        errors(&mut found, &by_mesh, &|name| name.into());
-        power::share_errors(&mut found);
-    }
-    found.warn(&summary.warnings);
-    Ok(found)
 }
 
 /// Returns the figures of the summary of a cycle over its period [s], and its stability if that is known.

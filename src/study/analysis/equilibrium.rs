@@ -23,8 +23,31 @@ impl Analysis for EquilibriumAnalysis {
         equilibrium::system(case, case.time.end_s).map(|_| ())
     }
 
+    /// Computes the equilibrium under the loads at the end.
     fn figures(&self, case: &Case, ask: AnalysisRequest, stop: StopCheck, _: RunCase) -> Result<AnalysisOutcome> {
-        at_rest(case, ask, stop)
+        let options = at_the_end(case);
+        let mut of = |case: &Case| numbers::of_equilibrium(case, &options);
+        let refined = refine::if_asked(case, ask.accuracy, false, &mut of)?;
+        let case = refined.as_ref().map_or(case, |(chosen, _)| chosen);
+        let path = equilibrium::follow(case, &options, &mut until(stop))?;
+        let system = equilibrium::system(case, options.at_s)?;
+        let columns = equilibrium::columns(&system);
+        let mut found = of_path(&columns, &path);
+        let key = |name: &str| {
+            let column = columns.iter().find(|column| column.name == name);
+            column.map_or_else(|| name.into(), |column| column.key())
+        };
+        if let Some((_, accuracy)) = &refined {
+            accurate(&mut found, accuracy, &key);
+        } else if ask.meshes && path.fault.is_none() {
+            let here = numbers::of_path(case, &columns, &path)?;
+            let by_mesh = meshes::judge(case, &here, &mut of)?.with_effects(case, &here, &mut of)?;
+            errors(&mut found, &by_mesh, &key);
+        }
+        found.warn(&early_warnings::at_rest(case, &system));
+        found.warn(slow_fluid::warning(case, &system, options.at_s).as_slice());
+        found.warn(&path.warnings());
+        Ok(found)
     }
 
     fn names(&self, case: &Case) -> Result<Vec<String>> {
@@ -65,33 +88,6 @@ fn at_the_end(case: &Case) -> EquilibriumOptions {
         points: Some(POINTS),
         ..EquilibriumOptions::at(case.time.end_s)
     }
-}
-
-/// Computes the equilibrium under the loads at the end.
-fn at_rest(case: &Case, ask: AnalysisRequest, stop: StopCheck) -> Result<AnalysisOutcome> {
-    let options = at_the_end(case);
-    let mut of = |case: &Case| numbers::of_equilibrium(case, &options);
-    let refined = refine::if_asked(case, ask.accuracy, false, &mut of)?;
-    let case = refined.as_ref().map_or(case, |(chosen, _)| chosen);
-    let path = equilibrium::follow(case, &options, &mut until(stop))?;
-    let system = equilibrium::system(case, options.at_s)?;
-    let columns = equilibrium::columns(&system);
-    let mut found = of_path(&columns, &path);
-    let key = |name: &str| {
-        let column = columns.iter().find(|column| column.name == name);
-        column.map_or_else(|| name.into(), |column| column.key())
-    };
-    if let Some((_, accuracy)) = &refined {
-        accurate(&mut found, accuracy, &key);
-    } else if ask.meshes && path.fault.is_none() {
-        let here = numbers::of_path(case, &columns, &path)?;
-        let by_mesh = meshes::judge(case, &here, &mut of)?.with_effects(case, &here, &mut of)?;
-        errors(&mut found, &by_mesh, &key);
-    }
-    found.warn(&early_warnings::at_rest(case, &system));
-    found.warn(slow_fluid::warning(case, &system, options.at_s).as_slice());
-    found.warn(&path.warnings());
-    Ok(found)
 }
 
 /// Figures of the last state of a path.

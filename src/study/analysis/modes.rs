@@ -25,8 +25,35 @@ impl Analysis for ModesAnalysis {
         System::new(case).map(|_| ())
     }
 
+    /// Figures of small motions about the initial state: the lowest modes that oscillate.
     fn figures(&self, case: &Case, ask: AnalysisRequest, _: StopCheck, _: RunCase) -> Result<AnalysisOutcome> {
-        small(case, ask)
+        let (mut all, plan) = swinging(case)?;
+        let mut of = |case: &Case| numbers::of_modes(case, None, &plan);
+        let refined = refine::if_asked(case, ask.accuracy, false, &mut of)?;
+        let case = match &refined {
+            None => case,
+            Some((chosen, _)) => {
+                all = modes::modes(chosen, &plan)?;
+                chosen
+            }
+        };
+        if ask.meshes && refined.is_none() {
+            refine::meshes::judge_modes(case, None, &plan, &mut all)?;
+        }
+        let mut found = of_modes(&all);
+        if let Some((_, accuracy)) = &refined {
+            reached(&mut found, accuracy);
+            let worst = accuracy.quantities.values().filter_map(|estimate| estimate.total);
+            found.put("largest_error", worst.reduce(f64::max));
+        }
+        found.warn(&early_warnings::at_rest(case, &System::new(case)?));
+        // warn only about modes that are reported
+        all.modes = lowest(&all.modes)
+            .into_iter()
+            .map(|place| all.modes[place].clone())
+            .collect();
+        found.warn(&all.warnings("the start"));
+        Ok(found)
     }
 
     fn names(&self, _: &Case) -> Result<Vec<String>> {
@@ -88,37 +115,6 @@ pub fn lowest(all: &[modes::Mode]) -> Vec<usize> {
     swinging.sort_by(|a, b| all[*a].s.im.total_cmp(&all[*b].s.im));
     swinging.truncate(MODES);
     swinging
-}
-
-/// Figures of small motions about the initial state: the lowest modes that oscillate.
-fn small(case: &Case, ask: AnalysisRequest) -> Result<AnalysisOutcome> {
-    let (mut all, plan) = swinging(case)?;
-    let mut of = |case: &Case| numbers::of_modes(case, None, &plan);
-    let refined = refine::if_asked(case, ask.accuracy, false, &mut of)?;
-    let case = match &refined {
-        None => case,
-        Some((chosen, _)) => {
-            all = modes::modes(chosen, &plan)?;
-            chosen
-        }
-    };
-    if ask.meshes && refined.is_none() {
-        refine::meshes::judge_modes(case, None, &plan, &mut all)?;
-    }
-    let mut found = of_modes(&all);
-    if let Some((_, accuracy)) = &refined {
-        reached(&mut found, accuracy);
-        let worst = accuracy.quantities.values().filter_map(|estimate| estimate.total);
-        found.put("largest_error", worst.reduce(f64::max));
-    }
-    found.warn(&early_warnings::at_rest(case, &System::new(case)?));
-    // warn only about modes that are reported
-    all.modes = lowest(&all.modes)
-        .into_iter()
-        .map(|place| all.modes[place].clone())
-        .collect();
-    found.warn(&all.warnings("the start"));
-    Ok(found)
 }
 
 /// Figures of the lowest modes that oscillate.

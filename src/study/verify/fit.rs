@@ -2,9 +2,25 @@
 
 use std::f64::consts::TAU;
 
+use crate::error::Result;
+
 /// Limit `h -> 0` from values at `2h` and `h` with a second-order error.
 pub fn richardson(coarse: f64, fine: f64) -> f64 {
     fine + (fine - coarse) / 3.0
+}
+
+/// Zero of a function near two places, by the secant method.
+pub fn secant([mut a, mut b]: [f64; 2], value: impl Fn(f64) -> Result<f64>) -> Result<f64> {
+    let mut at_a = value(a)?;
+    for _ in 0..8 {
+        let at_b = value(b)?;
+        let next = b - at_b * (b - a) / (at_b - at_a);
+        (a, at_a, b) = (b, at_b, next);
+        if (b - a).abs() < 1e-8 {
+            break;
+        }
+    }
+    Ok(b)
 }
 
 /// Growth rate and angular frequency [1/s] of samples of an exponentially growing or decaying oscillation, `interval`

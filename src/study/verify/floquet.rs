@@ -6,6 +6,7 @@ use std::path::Path;
 use serde_json::{Value, json};
 
 use super::figure::ExactFigure;
+use super::fit::secant;
 use super::problem::SolvedProblem;
 use super::scene::unit_beam;
 use super::solve::on_three_meshes;
@@ -102,30 +103,20 @@ pub fn bending(case: &Value) -> Result<Vec<Multiplier>> {
 }
 
 /// Half the trace of the first mode's period map, plus one: 0 on the edges, negative in the tongue.
-fn above(cells: usize, ratio: f64) -> Result<f64> {
-    let found = first(cells, ratio, (NARROW, 0.0))?;
-    Ok(1.0
-        + match found.as_slice() {
-            [a, b, ..] if a.im == 0.0 => 0.5 * (a.re + b.re),
-            [a, ..] => a.re,
-            [] => f64::NAN,
-        })
+pub fn above_tongue(found: &[Multiplier]) -> f64 {
+    1.0 + match found {
+        [a, b, ..] if a.im == 0.0 => 0.5 * (a.re + b.re),
+        [a, ..] => a.re,
+        [] => f64::NAN,
+    }
 }
 
 /// Edge of the tongue on a mesh, below (`side = -1`) or above `2 ω1`, by the secant method.
 fn edge(cells: usize, side: f64) -> Result<f64> {
     let guess = 1.0 + 0.25 * side * NARROW;
-    let (mut a, mut b) = (guess - 2e-3 * side, guess + 2e-3 * side);
-    let mut at_a = above(cells, a)?;
-    for _ in 0..8 {
-        let at_b = above(cells, b)?;
-        let next = b - at_b * (b - a) / (at_b - at_a);
-        (a, at_a, b) = (b, at_b, next);
-        if (b - a).abs() < 1e-8 {
-            break;
-        }
-    }
-    Ok(b)
+    secant([guess - 2e-3 * side, guess + 2e-3 * side], |ratio| {
+        Ok(above_tongue(&first(cells, ratio, (NARROW, 0.0))?))
+    })
 }
 
 /// Edge of the tongue of Mathieu's equation: `1/x² = 1 ∓ q - q²/8 ± q³/64`, `q = ε/(2x²)`, by bisection.

@@ -8,7 +8,8 @@ use nalgebra::{DMatrix, DVector};
 use serde_json::json;
 
 use super::figure::ExactFigure;
-use super::floquet::bending;
+use super::fit::secant;
+use super::floquet::{above_tongue, bending};
 use super::problem::SolvedProblem;
 use super::solve::on_three_meshes;
 use crate::case;
@@ -83,27 +84,10 @@ fn section() -> Result<(Section, f64)> {
 /// Onset over the length on a mesh: the amplitude at which half the trace of the first mode's period map is -1, by the
 /// secant method.
 fn of_program(cells: usize) -> Result<f64> {
-    let above = |amplitude: f64| -> Result<f64> {
-        let found = bending(&case_of(amplitude, cells))?;
-        Ok(1.0
-            + match found.as_slice() {
-                [a, b, ..] if a.im == 0.0 => 0.5 * (a.re + b.re),
-                [a, ..] => a.re,
-                [] => f64::NAN,
-            })
-    };
-    let (mut a, mut b) = (0.0286, 0.0292);
-    let mut at_a = above(a)?;
-    for _ in 0..8 {
-        let at_b = above(b)?;
-        let next = b - at_b * (b - a) / (at_b - at_a);
-        (a, at_a, b) = (b, at_b, next);
-        if (b - a).abs() < 1e-8 {
-            break;
-        }
-    }
-    let (_, length) = section()?;
-    Ok(b / length)
+    let amplitude = secant([0.0286, 0.0292], |amplitude| {
+        Ok(above_tongue(&bending(&case_of(amplitude, cells))?))
+    })?;
+    Ok(amplitude / section()?.1)
 }
 
 /// Onset over the length for one mode of an inextensible beam without rotary inertia: Mathieu's equation.
