@@ -4,7 +4,7 @@ use std::process::ExitCode;
 use std::time::Instant;
 
 use super::arguments::EquilibriumArguments;
-use super::uncertain::{self, Uncertain};
+use super::uncertain;
 use super::{interrupt, progress_line, resources, terminal};
 use crate::case::parameter::Parameter;
 use crate::case::{Case, inherited};
@@ -39,13 +39,9 @@ pub fn equilibrium(asked: &EquilibriumArguments) -> Result<ExitCode> {
                     instant, use --set /time/end_s=SECONDS";
         return usage(what);
     }
-    let uncertain = Uncertain::new(
-        &asked.uncertain,
-        &asked.case,
-        case,
-        AnalysisKind::Equilibrium,
-        asked.result.quiet,
-    )?;
+    let uncertain = asked
+        .uncertain
+        .begin(&asked.case, case, AnalysisKind::Equilibrium, asked.result.quiet)?;
     let mut folder = asked.result.place.claim(case, FolderKind::Equilibrium)?;
     let stop = asked.result.wall.flag();
     let begin = Instant::now();

@@ -3,7 +3,7 @@
 use std::process::ExitCode;
 
 use super::arguments::FloquetArguments;
-use super::uncertain::{self, Uncertain};
+use super::uncertain;
 use super::{interrupt, journal, progress_line, resources};
 use crate::case::Case;
 use crate::error::{Error, Result, usage};
@@ -51,13 +51,9 @@ fn one(asked: &FloquetArguments, case: &Case) -> Result<ExitCode> {
                     floquet.json contains its mesh and tolerance";
         return usage(what);
     }
-    let uncertain = Uncertain::new(
-        &asked.uncertain,
-        &asked.case,
-        case,
-        AnalysisKind::Floquet,
-        asked.result.quiet,
-    )?;
+    let uncertain = asked
+        .uncertain
+        .begin(&asked.case, case, AnalysisKind::Floquet, asked.result.quiet)?;
     let mut folder = asked.result.place.claim(case, FolderKind::Floquet)?;
     let stop = asked.result.wall.stop();
     let mut of = |case: &Case| refine::numbers::of_multipliers(case, asked.period, asked.count, &stop);

@@ -3,7 +3,7 @@
 use std::process::ExitCode;
 
 use super::arguments::{FloquetArguments, ModesArguments};
-use super::uncertain::{self, Uncertain};
+use super::uncertain;
 use super::{progress_line, resources, terminal};
 use crate::case::parameter::Parameter;
 use crate::case::{Case, inherited};
@@ -50,13 +50,9 @@ pub fn modes(asked: &ModesArguments) -> Result<ExitCode> {
                     --at, --near or --accuracy";
         return usage(what);
     }
-    let uncertain = Uncertain::new(
-        &asked.uncertain,
-        &asked.case,
-        &case,
-        AnalysisKind::Modes,
-        asked.result.quiet,
-    )?;
+    let uncertain = asked
+        .uncertain
+        .begin(&asked.case, &case, AnalysisKind::Modes, asked.result.quiet)?;
     let mut folder = asked.result.place.claim(&case, FolderKind::Modes)?;
     asked.result.wall.flag();
     if !asked.result.quiet {

@@ -3,7 +3,7 @@
 use std::process::ExitCode;
 
 use super::arguments::PeriodicArguments;
-use super::uncertain::{self, Uncertain};
+use super::uncertain;
 use super::{interrupt, journal, progress_line, resources, terminal};
 use crate::case::parameter::Parameter;
 use crate::case::{Case, amounts};
@@ -59,13 +59,9 @@ fn one(asked: &PeriodicArguments) -> Result<ExitCode> {
     if !(asked.periods == 1 && asked.accuracy.is_none() || asked.uncertain.uncertain.is_empty()) {
         return usage("--uncertain cannot be combined with --periods or --accuracy");
     }
-    let uncertain = Uncertain::new(
-        &asked.uncertain,
-        &asked.case,
-        &case,
-        AnalysisKind::Periodic,
-        asked.result.quiet,
-    )?;
+    let uncertain = asked
+        .uncertain
+        .begin(&asked.case, &case, AnalysisKind::Periodic, asked.result.quiet)?;
     let parameters = Parameter::all(&case, &asked.sensitivities)?;
     if !parameters.is_empty() {
         sensitivity::allowed(&case, &PeriodicScene::new(&case, None)?, &parameters)?;

@@ -143,7 +143,7 @@ fn uncertain(
         band: request.band,
         frequencies: frequencies.to_vec(),
     });
-    Uncertain::new(&asked.uncertain, &asked.case, case, what, asked.result.quiet)
+    asked.uncertain.begin(&asked.case, case, what, asked.result.quiet)
 }
 
 /// Checks first and last frequency [Hz], whose order is `ordered` if the first is `relation` the second, and the number of samples.

@@ -42,29 +42,29 @@ pub struct Uncertain {
     evaluations: Evaluations,
 }
 
-impl Uncertain {
+impl UncertainArguments {
     /// Checks every sample of a case before anything is computed; none if no number is uncertain.
     ///
     /// # Errors
     /// Contradictory arguments, or a sample that is not a valid case.
-    pub fn new(
-        asked: &UncertainArguments,
+    pub fn begin(
+        &self,
         CaseArguments { case: path, sets }: &CaseArguments,
         own: &Case,
         what: AnalysisKind,
         quiet: bool,
-    ) -> Result<Option<Self>> {
-        if asked.uncertain.is_empty() {
+    ) -> Result<Option<Uncertain>> {
+        if self.uncertain.is_empty() {
             return Ok(None);
         }
         if path == Path::new("-") {
             return usage("--uncertain: the case is read again for every sample; name its file in place of -");
         }
         let read = |text: &String| VariedNumber::parse_as("--uncertain", text);
-        let inputs = asked.uncertain.iter().map(read).collect::<Result<Vec<_>>>()?;
-        let one = Self {
-            plan: SamplePlan::new(inputs, asked.samples, asked.seed, asked.indices)?,
-            jobs: sweep::jobs(asked.jobs)?,
+        let inputs = self.uncertain.iter().map(read).collect::<Result<Vec<_>>>()?;
+        let one = Uncertain {
+            plan: SamplePlan::new(inputs, self.samples, self.seed, self.indices)?,
+            jobs: sweep::jobs(self.jobs)?,
             text: case::text(path)?,
             path: path.clone(),
             sets: sets.clone(),
@@ -77,7 +77,9 @@ impl Uncertain {
         one.check()?;
         Ok(Some(one))
     }
+}
 
+impl Uncertain {
     /// Adds the effects with which a run was repeated to the samples.
     pub fn with_effects(&mut self, companion: &CompanionRun) {
         let added = companion.earlier_runs.iter().flat_map(|run| &run.added_effects);

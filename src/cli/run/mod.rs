@@ -13,7 +13,7 @@ use std::time::{Duration, Instant};
 use super::arguments::RunArguments;
 use super::interrupt::WallArguments;
 use super::progress::ProgressDisplay;
-use super::uncertain::{self, Uncertain};
+use super::uncertain;
 use super::{interrupt, progress_line, resources, summary_box, terminal};
 use crate::case::Case;
 use crate::case::parameter::Parameter;
@@ -56,7 +56,9 @@ pub fn run(asked: &RunArguments, began: Instant) -> Result<ExitCode> {
                     summary.json contains its mesh and tolerance";
         return usage(what);
     }
-    let mut uncertain = Uncertain::new(&asked.uncertain, &asked.case, case, AnalysisKind::Run, asked.quiet)?;
+    let mut uncertain = asked
+        .uncertain
+        .begin(&asked.case, case, AnalysisKind::Run, asked.quiet)?;
     let way = Way {
         hook: hook(asked),
         lean: asked.lean,

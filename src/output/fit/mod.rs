@@ -15,6 +15,7 @@ use crate::study::data::Matched;
 use crate::study::fit::Fitted;
 use crate::study::fit::abscissa::Abscissa;
 use crate::study::fit::comparison::DataComparison;
+use crate::study::fit::outcome::FittedNumber;
 use crate::study::fit::problem::FitProblem;
 
 pub use text::{comparison, describe};
@@ -127,15 +128,16 @@ fn drawn(problem: &FitProblem, found: &Fitted) -> Option<String> {
         let noise = Some(2.0 * found.fit.columns[k].noise);
         over_data((&one.name, &one.unit), &x, line, curves, noise)
     });
-    let estimates = found.fit.parameters.iter().map(|one| {
-        let error = one
-            .standard_error
-            .map_or(String::new(), |error| format!(" ± {}", significant(error, 2)));
-        let name = readable::pointer_name(&one.pointer);
-        format!("{name} = {}{error}", significant(one.value, 5))
-    });
+    let named = |one: &FittedNumber| format!("{} = {}", readable::pointer_name(&one.pointer), shown(one));
+    let estimates = found.fit.parameters.iter().map(named);
     let about = estimates.collect::<Vec<_>>().join(", ");
     Picture::stacked(format!("{}, fitted", found.fit.case), about, panels.flatten()).svg()
+}
+
+/// An estimate with its standard error, if known.
+pub fn shown(one: &FittedNumber) -> String {
+    let error = one.standard_error.map(|error| format!(" ± {}", significant(error, 2)));
+    significant(one.value, 5) + &error.unwrap_or_default()
 }
 
 /// Panels of one quantity: data with the model, and residuals with two standard deviations of the noise, if known.

@@ -8,7 +8,7 @@ use crate::case::Case;
 use crate::case::schema::Effect;
 use crate::model::{Model, characteristic};
 use crate::output::columns::cells;
-use crate::output::numbers::{count, duration, pretty_unit, significant};
+use crate::output::numbers::{count, counted, duration, pretty_unit, significant};
 use crate::run::summary::Summary;
 
 /// Characteristic numbers: name, unit, meaning. A name that ends with `_` matches all names that start with it.
@@ -113,7 +113,6 @@ pub fn work(summary: &Summary) -> Value {
         .filter(|(_, s)| known > 0.0 && *s > 0.0)
         .map(|(words, s)| json!({"words": words, "seconds": s, "text": duration(*s), "share": s / known}))
         .collect();
-    let n = |k: u64, one: &str, many: &str| format!("{} {}", count(k), if k == 1 { one } else { many });
     let rejected = match c.error_test_failures + c.newton_failures {
         0 => "none had to be repeated".to_string(),
         k => format!(
@@ -125,26 +124,26 @@ pub fn work(summary: &Summary) -> Value {
         ),
     };
     let mut sentences = vec![
-        format!("{}; {rejected}.", n(c.steps, "step", "steps")),
+        format!("{}; {rejected}.", counted(c.steps, "step")),
         format!(
             "{} of the {} equations, {}, {}, {}.",
-            n(c.residual_evaluations, "evaluation", "evaluations"),
+            counted(c.residual_evaluations, "evaluation"),
             count(summary.unknowns as u64),
-            n(c.jacobian_evaluations, "Jacobian", "Jacobians"),
-            n(c.factorizations, "factorisation", "factorisations"),
-            n(c.linear_solves, "linear solve", "linear solves"),
+            counted(c.jacobian_evaluations, "Jacobian"),
+            counted(c.factorizations, "factorisation"),
+            counted(c.linear_solves, "linear solve"),
         ),
     ];
     if c.pivot_refreshes > 0 {
         sentences.push(format!(
             "Pivots were chosen anew {}.",
-            n(c.pivot_refreshes, "time", "times")
+            counted(c.pivot_refreshes, "time")
         ));
     }
     if c.restarts > 0 {
         sentences.push(format!(
             "The integration started anew {}, where something jumps.",
-            n(c.restarts, "time", "times")
+            counted(c.restarts, "time")
         ));
     }
     json!({"sentences": sentences, "parts": parts, "total": duration(known), "orders": c.steps_by_order})

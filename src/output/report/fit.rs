@@ -4,7 +4,7 @@ use serde_json::json;
 
 use super::{FolderKind, Page, Place, cells};
 use crate::error::Result;
-use crate::output::fit::{CSV, FITTED, PICTURE};
+use crate::output::fit::{CSV, FITTED, PICTURE, shown};
 use crate::output::numbers::{counted, duration, significant};
 use crate::results::fit::{Bound, Fit, FittedNumber};
 
@@ -24,16 +24,13 @@ fn outputs(found: &Fit) -> String {
 pub fn data(place: &Place) -> Result<Page> {
     let (found, mut page) = place.begun::<Fit>(FolderKind::Fit, |found| (&found.case, &found.warnings))?;
     let tile = |one: &FittedNumber| {
-        let error = one
-            .standard_error
-            .map_or(String::new(), |error| format!(" ± {}", significant(error, 2)));
         let note = match (one.interval_95, one.at_bound) {
             (Some([low, high]), _) => format!("95 %: {} to {}", significant(low, 5), significant(high, 5)),
             (None, Some(Bound::Low)) => "at its lower bound".into(),
             (None, Some(Bound::High)) => "at its upper bound".into(),
             (None, None) => "not determined by the data".into(),
         };
-        json!({"label": one.pointer, "value": format!("{}{error}", significant(one.value, 5)), "note": note})
+        json!({"label": one.pointer, "value": shown(one), "note": note})
     };
     let row = |(k, one): (usize, &FittedNumber)| {
         let [low, high] = [0, 1].map(|k| one.interval_95.map(|i| i[k]));

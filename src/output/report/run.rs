@@ -129,17 +129,17 @@ fn settled(x: f64) -> f64 {
 }
 
 /// Time of the largest value, and the value at the end; angles in degrees.
-fn when_and_end(summary: &Summary, one: Interest) -> String {
-    let Some(found) = summary.quantity(one.name()) else {
+fn when_and_end(found: Option<&Quantity>, unit: &str) -> String {
+    let Some(found) = found else {
         return String::new();
     };
     let degrees = |x: f64| format!("{}°", trimmed(&significant(settled(x).to_degrees(), 3)));
-    let angle = one.unit() == "rad";
+    let angle = unit == "rad";
     let largest = found.largest().filter(|_| angle).map(|x| format!(", {}", degrees(x)));
     let at = found.max_abs_at_s.map(|t| format!(", at {}", time(t)));
     let end = found.last.map(|x| match angle {
         true => format!("; {} at the end", degrees(x)),
-        false => format!("; {} at the end", quantity(settled(x), one.unit(), 3)),
+        false => format!("; {} at the end", quantity(settled(x), unit, 3)),
     });
     [largest, at, end].into_iter().flatten().collect()
 }
@@ -239,23 +239,15 @@ fn tiles(summary: &Summary) -> Vec<Value> {
             let found = summary.probes.get(&name);
             let value = found.and_then(Quantity::largest).map(settled);
             let shown = value.map(|value| figure(summary, (&name, &LARGEST), value, unit));
-            let at = found
-                .and_then(|found| found.max_abs_at_s)
-                .map(|t| format!(", at {}", time(t)));
-            let end = found
-                .and_then(|found| found.last)
-                .map(|x| format!("; {} at the end", quantity(settled(x), unit, 3)));
-            let note = format!(
-                "largest displacement {symbol} in the axes of {beam}{}{}",
-                at.unwrap_or_default(),
-                end.unwrap_or_default()
-            );
+            let when = when_and_end(found, unit);
+            let note = format!("largest displacement {symbol} in the axes of {beam}{when}");
             tile(&format!("Tip of {beam}, {symbol}"), shown, &note);
         }
     }
     for (one, label, words) in tip.into_iter().filter(|_| beams.is_empty()) {
         let value = most(one.name(), one.unit());
-        tile(label, value, &format!("{words}{}", when_and_end(summary, one)));
+        let when = when_and_end(summary.quantity(one.name()), one.unit());
+        tile(label, value, &format!("{words}{when}"));
     }
     if let Some(step) = summary.step_response.get(Interest::TipU1.name()) {
         let settles = step

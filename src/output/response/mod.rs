@@ -113,18 +113,8 @@ pub fn describe(found: &ResponseRecord) -> String {
         significant(*found.frequency_hz.last().unwrap_or(&0.0), 4),
         counted(found.frequency_hz.len() as u64, "sample")
     );
-    let mut rows = vec![];
-    for curve in found.curves() {
-        rows.extend(curve.peaks.iter().map(|peak| row(curve, peak)));
-        if curve.peaks.is_empty() {
-            let cells = ["", &curve.output, "none", "", "", "", ""];
-            rows.push(cells.map(String::from));
-        }
-    }
-    text += &table(
-        " | <output | peak [Hz] | amplitude | [dB] | phase [°] | damping ratio",
-        rows,
-    );
+    let headings = " | <output | peak [Hz] | amplitude | [dB] | phase [°] | damping ratio";
+    text += &table(headings, found.curves().flat_map(|curve| peak_rows(curve, "")));
     text.push('\n');
     let at = found
         .curves()
@@ -244,11 +234,19 @@ fn at_row(curve: &ResponseCurve, value: &ResponseValue) -> [String; 6] {
     ]
 }
 
-fn row(curve: &ResponseCurve, peak: &ResponsePeak) -> [String; 7] {
+/// A row for each peak of a curve, behind a first cell.
+fn peak_rows(curve: &ResponseCurve, first: &str) -> Vec<[String; 7]> {
+    match curve.peaks.is_empty() {
+        true => vec![[first, &curve.output, "none", "", "", "", ""].map(String::from)],
+        false => curve.peaks.iter().map(|peak| row(curve, peak, first)).collect(),
+    }
+}
+
+fn row(curve: &ResponseCurve, peak: &ResponsePeak, first: &str) -> [String; 7] {
     // the amplitude found at an undamped pole is a rounding error
     let unbounded = peak.damping_ratio == Some(0.0);
     [
-        String::new(),
+        first.into(),
         curve.output.clone(),
         significant(peak.frequency_hz, 7),
         if unbounded {
@@ -313,17 +311,8 @@ pub fn write(folder: &mut ResultFolder, found: &ResponseRecord) -> Result<()> {
 /// Table of the peaks of several results.
 pub fn peaks(all: &ComparedResponses) -> String {
     let of = |one: &NamedResponse| {
-        let rows = |curve: &ResponseCurve| {
-            let mut rows: Vec<_> = curve.peaks.iter().map(|peak| row(curve, peak)).collect();
-            if rows.is_empty() {
-                rows.push(["", &curve.output, "none", "", "", "", ""].map(String::from));
-            }
-            let named = rows
-                .iter()
-                .map(|row| [std::slice::from_ref(&one.folder), &row[1..]].concat());
-            named.collect::<Vec<_>>()
-        };
-        one.response.curves().flat_map(rows).collect::<Vec<_>>()
+        let rows = one.response.curves().flat_map(|curve| peak_rows(curve, &one.folder));
+        rows.collect::<Vec<_>>()
     };
     let headings = "<result | <output | peak [Hz] | amplitude | [dB] | phase [°] | damping ratio";
     let mut text = table(headings, all.results.iter().flat_map(of));

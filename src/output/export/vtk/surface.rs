@@ -30,28 +30,24 @@ pub(super) struct Data {
 impl Data {
     /// One double per point or cell.
     pub fn scalar(name: &'static str, values: Vec<f64>) -> Self {
-        Self {
-            name,
-            components: &[],
-            values: SurfaceValues::Double(values),
-        }
+        Self::new(name, &[], SurfaceValues::Double(values))
     }
 
     /// One integer per point or cell.
     pub fn number(name: &'static str, values: Vec<i32>) -> Self {
-        Self {
-            name,
-            components: &[],
-            values: SurfaceValues::Whole(values),
-        }
+        Self::new(name, &[], SurfaceValues::Whole(values))
     }
 
     /// A vector in VTK's axes.
     pub fn vector(name: &'static str, values: Vec<f64>) -> Self {
+        Self::new(name, &["axial", "transverse", "across"], SurfaceValues::Double(values))
+    }
+
+    fn new(name: &'static str, components: &'static [&'static str], values: SurfaceValues) -> Self {
         Self {
             name,
-            components: &["axial", "transverse", "across"],
-            values: SurfaceValues::Double(values),
+            components,
+            values,
         }
     }
 }
