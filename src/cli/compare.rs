@@ -6,7 +6,7 @@ use std::process::ExitCode;
 
 use serde_json::Value;
 
-use super::arguments::CompareArguments;
+use super::arguments::{CompareArguments, parse_all};
 use super::{compare_responses, terminal};
 use crate::case;
 use crate::error::{Error, Result, usage};
@@ -179,11 +179,7 @@ fn several(found: &ManyComparison) -> String {
 
 /// Compares a run with measured data.
 fn with_data(asked: &CompareArguments) -> Result<ExitCode> {
-    let matches = asked
-        .matches
-        .iter()
-        .map(|text| Match::parse(text))
-        .collect::<Result<Vec<_>>>()?;
+    let matches = parse_all(&asked.matches, Match::parse)?;
     let [folder, data] = asked.results.as_slice() else {
         return usage(format!(
             "--match: one result folder and one file of data, not {} of them",

@@ -11,7 +11,6 @@ use crate::case::{Case, inherited};
 use crate::error::{Error, Result, usage};
 use crate::output::equilibrium as files;
 use crate::output::kind::FolderKind;
-use crate::output::report;
 use crate::output::uncertainty as spread;
 use crate::results::run::Bands;
 use crate::run::equilibrium::{self, EquilibriumOptions};
@@ -100,8 +99,8 @@ pub fn equilibrium(asked: &EquilibriumArguments) -> Result<ExitCode> {
             found.bands = uncertain::bands(uncertainty.as_ref());
         }
         let json = || files::json(&found);
-        written = written.and(uncertain::write(uncertainty.as_ref(), &folder, &[(files::JSON, &json)]));
-        written = written.and(report::complete(&folder, case));
+        let place = (&folder, case);
+        written = uncertain::complete(uncertainty.as_ref(), place, written, &[(files::JSON, &json)]);
     }
     let (text, words) = (
         || files::json(&found),

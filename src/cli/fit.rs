@@ -2,7 +2,7 @@
 
 use std::process::ExitCode;
 
-use super::arguments::{FitArguments, FittedThrough};
+use super::arguments::{FitArguments, FittedThrough, parse_all};
 use super::{interrupt, journal, progress_line, resources, sweep};
 use crate::error::{Result, usage};
 use crate::output::fit as files;
@@ -58,11 +58,7 @@ pub fn fit(asked: &FitArguments) -> Result<ExitCode> {
 }
 
 fn wanted(asked: &FitArguments) -> Result<FitRequest> {
-    let drives = asked
-        .drive
-        .iter()
-        .map(|text| DrivenNumber::parse(text))
-        .collect::<Result<Vec<_>>>()?;
+    let drives = parse_all(&asked.drive, DrivenNumber::parse)?;
     match asked.command {
         Some(FittedThrough::Equilibrium) if drives.is_empty() => {
             let what = "--command equilibrium needs --drive COLUMN=POINTER: the number of the case that every row sets";
@@ -83,20 +79,12 @@ fn wanted(asked: &FitArguments) -> Result<FitRequest> {
         _ => {}
     }
     Ok(FitRequest {
-        spans: asked
-            .vary
-            .iter()
-            .map(|text| ParameterBounds::parse(text))
-            .collect::<Result<_>>()?,
-        matches: asked
-            .matches
-            .iter()
-            .map(|text| Match::parse(text))
-            .collect::<Result<_>>()?,
+        spans: parse_all(&asked.vary, ParameterBounds::parse)?,
+        matches: parse_all(&asked.matches, Match::parse)?,
         time: asked.time.clone(),
         drives,
         input: asked.input.clone(),
-        noise: asked.noise.iter().map(|text| noise(text)).collect::<Result<_>>()?,
+        noise: parse_all(&asked.noise, noise)?,
         loss: asked.robust.map_or(LossFunction::Squares, LossFunction::from),
         starts: asked.starts as usize,
         jobs: sweep::jobs(asked.jobs)?,

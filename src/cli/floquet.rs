@@ -95,13 +95,8 @@ fn one(asked: &FloquetArguments, case: &Case) -> Result<ExitCode> {
     let uncertainty = uncertain::compute(uncertain.as_ref(), Some(&folder))?;
     found.bands = uncertain::bands(uncertainty.as_ref());
     let text = || results::text(&found);
-    let written = written
-        .and(uncertain::write(
-            uncertainty.as_ref(),
-            &folder,
-            &[(FolderKind::Floquet.sign(), &text)],
-        ))
-        .and(report::complete(&folder, case));
+    let with_bands: (&str, &dyn Fn() -> String) = (FolderKind::Floquet.sign(), &text);
+    let written = uncertain::complete(uncertainty.as_ref(), (&folder, case), written, &[with_bands]);
     let words = || files::describe(&found) + &uncertain::below(uncertainty.as_ref());
     super::print_result(asked.json, folder.dir(), written, text, words)
 }

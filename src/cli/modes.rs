@@ -11,7 +11,6 @@ use crate::discrete::System;
 use crate::error::{Result, usage};
 use crate::output::kind::FolderKind;
 use crate::output::modes::{self as files, Report};
-use crate::output::report;
 use crate::results::modes::LinearisedState;
 use crate::results::run::Bands;
 use crate::run::early_warnings;
@@ -96,9 +95,8 @@ pub fn modes(asked: &ModesArguments) -> Result<ExitCode> {
     let bands = &uncertain::bands(uncertainty.as_ref());
     let report = Report { bands, ..report };
     let json = || files::json(&report);
-    let written = written
-        .and(uncertain::write(uncertainty.as_ref(), &folder, &[(files::JSON, &json)]))
-        .and(report::complete(&folder, case));
+    let place = (&folder, case);
+    let written = uncertain::complete(uncertainty.as_ref(), place, written, &[(files::JSON, &json)]);
     let words = || {
         let spread = uncertain::below(uncertainty.as_ref());
         format!("{}\n{}\n{spread}", files::table(&report), report.sentences())

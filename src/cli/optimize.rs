@@ -2,7 +2,7 @@
 
 use std::process::ExitCode;
 
-use super::arguments::OptimizeArguments;
+use super::arguments::{OptimizeArguments, parse_all};
 use super::{interrupt, journal, progress_line, resources, sweep};
 use crate::case::Case;
 use crate::error::{Result, usage};
@@ -133,20 +133,12 @@ fn wanted(asked: &OptimizeArguments) -> Result<OptimizationRequest> {
     let figure = asked.maximize.as_ref().or(asked.minimize.as_ref());
     Ok(OptimizationRequest {
         what: asked.analysis.analysis()?,
-        spans: asked
-            .vary
-            .iter()
-            .map(|text| ParameterBounds::parse(text))
-            .collect::<Result<_>>()?,
+        spans: parse_all(&asked.vary, ParameterBounds::parse)?,
         goal: Goal {
             figure: figure.cloned().unwrap_or_default(),
             largest: asked.maximize.is_some(),
         },
-        limits: asked
-            .subject_to
-            .iter()
-            .map(|text| FigureLimit::parse(text))
-            .collect::<Result<_>>()?,
+        limits: parse_all(&asked.subject_to, FigureLimit::parse)?,
         starts: asked.starts as usize,
         jobs: sweep::jobs(asked.jobs)?,
     })

@@ -13,7 +13,6 @@ use crate::discrete::ledger::EnergyRate;
 use crate::error::numbers::{error_percent, significant};
 use crate::error::{Code, Result, usage};
 use crate::output::kind::FolderKind;
-use crate::output::report;
 use crate::output::response as files;
 use crate::results;
 use crate::results::ordered::Ordered;
@@ -115,9 +114,7 @@ pub fn response(asked: &ResponseArguments) -> Result<ExitCode> {
     answer.warnings.extend(varied);
     let written = files::write(&mut folder, &answer);
     let uncertainty = uncertain::compute(uncertain.as_ref(), Some(&folder))?;
-    let written = written
-        .and(uncertain::write(uncertainty.as_ref(), &folder, &[]))
-        .and(report::complete(&folder, &case));
+    let written = uncertain::complete(uncertainty.as_ref(), (&folder, &case), written, &[]);
     let (text, words) = (
         || results::text(&answer),
         || files::describe(&answer) + &uncertain::below(uncertainty.as_ref()),
@@ -159,12 +156,12 @@ pub fn check_band([from, to]: [f64; 2], points: usize, ordered: bool, relation: 
     Ok(())
 }
 
-/// Names without repetitions.
-pub fn each_once(names: &[String]) -> Vec<String> {
-    let mut all: Vec<String> = vec![];
-    for name in names {
-        if !all.contains(name) {
-            all.push(name.clone());
+/// Values without repetitions.
+pub fn each_once<T: Clone + PartialEq>(values: &[T]) -> Vec<T> {
+    let mut all: Vec<T> = vec![];
+    for value in values {
+        if !all.contains(value) {
+            all.push(value.clone());
         }
     }
     all
@@ -172,16 +169,10 @@ pub fn each_once(names: &[String]) -> Vec<String> {
 
 /// Checks frequencies of `--frequency` [Hz], and returns each once.
 pub fn each_frequency(frequencies: &[f64]) -> Result<Vec<f64>> {
-    let mut all: Vec<f64> = vec![];
-    for hz in frequencies {
-        if !(*hz > 0.0 && hz.is_finite()) {
-            return usage(format!("--frequency {hz}: expected a frequency above 0 Hz"));
-        }
-        if !all.contains(hz) {
-            all.push(*hz);
-        }
+    match frequencies.iter().find(|hz| !(**hz > 0.0 && hz.is_finite())) {
+        Some(hz) => usage(format!("--frequency {hz}: expected a frequency above 0 Hz")),
+        None => Ok(each_once(frequencies)),
     }
-    Ok(all)
 }
 
 fn request(asked: &ResponseArguments) -> Result<Request> {

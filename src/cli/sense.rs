@@ -2,7 +2,7 @@
 
 use std::process::ExitCode;
 
-use super::arguments::SenseArguments;
+use super::arguments::{SenseArguments, parse_all};
 use super::{interrupt, progress_line, resources};
 use crate::error::{Result, usage};
 use crate::output::folder::CASE;
@@ -99,11 +99,7 @@ fn question(asked: &SenseArguments, end_s: f64) -> Result<SenseOptions> {
         .choose
         .as_deref()
         .or(asked.pressures.is_none().then_some("variances"));
-    let loads: Vec<Basis> = asked
-        .loads
-        .iter()
-        .map(|text| Basis::parse(text))
-        .collect::<Result<_>>()?;
+    let loads: Vec<Basis> = parse_all(&asked.loads, Basis::parse)?;
     let profile = loads.iter().any(|load| matches!(load, Basis::Profile(_)));
     if let (Smoothing::Fixed(deviation), true) = (smoothing, asked.dynamic) {
         return usage(format!(

@@ -12,8 +12,8 @@ use super::sweep::progress::Counter;
 use super::{interrupt, journal, resources, sweep, terminal};
 use crate::case::{self, Case, inherited};
 use crate::error::{Result, usage};
-use crate::output::ResultFolder;
 use crate::output::uncertainty as files;
+use crate::output::{ResultFolder, report};
 use crate::results::run::Bands;
 use crate::results::uncertainty::Uncertainty;
 use crate::run::summary::{CompanionRun, Status};
@@ -247,6 +247,21 @@ pub fn write(
     files::write(folder, found)?;
     let mut all = with_bands.iter();
     all.try_for_each(|(name, text)| folder.write(name, text().as_bytes()).map(|_| ()))
+}
+
+/// Writes what [`write`] does, and the page, after the files of a result were written.
+///
+/// # Errors
+/// That of `written`; a file cannot be written.
+pub fn complete(
+    found: Option<&Uncertainty>,
+    (folder, case): (&ResultFolder, &Case),
+    written: Result<()>,
+    with_bands: &[(&str, &dyn Fn() -> String)],
+) -> Result<()> {
+    written
+        .and(write(found, folder, with_bands))
+        .and(report::complete(folder, case))
 }
 
 /// Bands for the result of the command itself.

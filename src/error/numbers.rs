@@ -190,6 +190,14 @@ pub fn percent(share: f64) -> String {
     format!("{} %", significant(100.0 * share, 3))
 }
 
+/// A change in percent with its sign: `+4.2 %`. `None` if it is not finite.
+pub fn change(percent: f64) -> Option<String> {
+    let sign = if percent > 0.0 { "+" } else { "" };
+    percent
+        .is_finite()
+        .then(|| format!("{sign}{} %", significant(percent, 3)))
+}
+
 /// A relative error as percent, with one to three digits depending on its size: `4 %`, `42 %`.
 pub fn error_percent(error: f64) -> String {
     let digits = match error {

@@ -129,6 +129,26 @@ impl Npz {
             bytes: vec![0; 8 * width],
         })
     }
+
+    /// Passes the rows with these numbers, ascending, to a function. Returns the rows after them.
+    ///
+    /// # Errors
+    ///
+    /// There is no such array, or it is incomplete.
+    pub fn chosen(&mut self, name: &str, wanted: &[usize], with: &mut dyn FnMut(&[f64])) -> io::Result<NpzRows<'_>> {
+        let mut rows = self.rows(name)?;
+        let (mut row, mut at) = (vec![], 0);
+        for &number in wanted {
+            for _ in at..number {
+                rows.pass()?;
+            }
+            if rows.next(&mut row)? {
+                with(&row);
+            }
+            at = number + 1;
+        }
+        Ok(rows)
+    }
 }
 
 /// Unread rows of an array.

@@ -27,6 +27,7 @@ use super::report::ReportArguments;
 use super::response::ResponseArguments;
 use super::result_folder::PlaceArguments;
 use super::schema::SchemaArguments;
+use crate::error::Result;
 pub use at_rest::{EquilibriumArguments, ModesArguments};
 pub use fit::{CompareArguments, FitArguments, FittedThrough};
 pub use map::MapArguments;
@@ -241,6 +242,14 @@ pub struct FloquetArguments {
     /// Print floquet.json or map.json instead of the table
     #[arg(long)]
     pub json: bool,
+}
+
+/// Parses all values of a repeatable option.
+///
+/// # Errors
+/// That of the first value that is wrong.
+pub fn parse_all<T>(texts: &[String], parse: fn(&str) -> Result<T>) -> Result<Vec<T>> {
+    texts.iter().map(|text| parse(text)).collect()
 }
 
 /// `mapping`.

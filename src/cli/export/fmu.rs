@@ -8,6 +8,7 @@ use serde_json::{Value, json};
 use super::state_space::TestedModel;
 use super::{ExportArguments, joined};
 use crate::case::{self, Case};
+use crate::cli::arguments::parse_all;
 use crate::error::{Error, Result, usage};
 use crate::output::columns::warnings;
 use crate::output::fmu::{FmuContents, FmuInput, Libraries};
@@ -80,11 +81,7 @@ pub(super) fn fmu(asked: &ExportArguments, file: &Path) -> Result<ExitCode> {
         return refused("--at and --no-self-test belong to a linear model, which --error requests");
     }
     let case = case::load(&asked.dir, &asked.sets)?;
-    let given: Vec<InputArgument> = asked
-        .input
-        .iter()
-        .map(|text| InputArgument::new(text))
-        .collect::<Result<_>>()?;
+    let given: Vec<InputArgument> = parse_all(&asked.input, InputArgument::new)?;
     if given.is_empty() {
         let known: Vec<String> = case::controls(&case).into_iter().map(|(at, ..)| at).collect();
         return refused(&match known.is_empty() {

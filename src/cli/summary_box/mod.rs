@@ -11,7 +11,7 @@ use textwrap::{Options, WordSplitter};
 
 use crate::discrete::quantities::Interest;
 use crate::error::visible;
-use crate::output::numbers::{count, counted, duration, percent, quantity, significant, trimmed, with_error};
+use crate::output::numbers::{change, count, counted, duration, percent, quantity, significant, trimmed, with_error};
 use crate::output::{accuracy, bands};
 use crate::run::sensitivity::figures::FigureSensitivity;
 use crate::run::summary::{Quantity, Status, Summary};
@@ -174,11 +174,7 @@ fn sensitivities(summary: &Summary) -> Option<String> {
         let relative = |one: Interest, word: &str| {
             let of = |all: &std::collections::BTreeMap<String, Quantity>| all.get(one.name())?.max_abs;
             let (value, slope) = (of(&summary.quantities)?, of(&s.quantities)?);
-            let ratio = slope * s.value / value;
-            let sign = if ratio > 0.0 { "+" } else { "" };
-            ratio
-                .is_finite()
-                .then(|| format!("{word} {sign}{} %", significant(ratio, 3)))
+            Some(format!("{word} {}", change(slope * s.value / value)?))
         };
         let shown: Vec<String> = SHOWN
             .into_iter()

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use super::overridden;
 use crate::case::{self, Case};
-use crate::cli::arguments::SweepArguments;
+use crate::cli::arguments::{SweepArguments, parse_all};
 use crate::cli::{progress_line, resources, terminal};
 use crate::error::{Result, usage};
 use crate::study::sweep::plan::{SweepPlan, SweptCase};
@@ -35,11 +35,7 @@ impl DesignSource {
     pub fn read(asked: &SweepArguments) -> Result<Self> {
         let accuracy = asked.accuracy.map(progress_line::accuracy).transpose()?;
         let draw = Draw::parse(&asked.design)?;
-        let varied = asked
-            .vary
-            .iter()
-            .map(|text| VariedNumber::parse(text))
-            .collect::<Result<Vec<_>>>()?;
+        let varied = parse_all(&asked.vary, VariedNumber::parse)?;
         if varied.is_empty() && asked.designs.is_none() && asked.cases.len() == 1 {
             let what = "only one case, and no number is varied: give --vary POINTER=SPEC, --designs FILE.csv, or \
                         several cases";

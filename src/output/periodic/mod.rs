@@ -8,7 +8,7 @@ pub use energies::{energies, headings as energy_headings, shown as energy_shown}
 
 use super::columns::{aligned, if_any, table};
 use super::folder::ResultFolder;
-use super::numbers::{counted, quantity, shortest, significant};
+use super::numbers::{change, counted, quantity, shortest, significant};
 use super::plot::canvas::LineStyle;
 use super::plot::colour::PALETTE;
 use super::plot::picture::{Glyph, Panel, Picture, PictureAxis, PictureSeries};
@@ -244,18 +244,17 @@ fn branch_lines(found: &CyclePath, points: &[(f64, f64)]) -> Vec<PictureSeries> 
 pub fn figures(summary: &Summary, period: f64, error: &dyn Fn(&str) -> Option<f64>) -> String {
     let quantities = &summary.quantities;
     let mut lines = vec![];
-    let beams: Vec<&str> = summary.beams().collect();
+    let mut line = |beam: &str, found: Option<&results::run::Quantity>, one: Interest| {
+        let value = found.and_then(|q| q.window_max_abs);
+        lines.extend(value.map(|x| [format!("largest {beam}{}", short(one)), quantity(x, one.unit(), 4)]));
+    };
+    let beams: Vec<String> = summary.beams().map(|beam| format!("{beam}.")).collect();
     for (beam, one) in beams.iter().flat_map(|beam| SHOWN.map(|one| (beam, one))) {
-        let tip = summary.probes.get(&format!("{beam}.{}", one.name()));
-        if let Some(value) = tip.and_then(|q| q.window_max_abs) {
-            lines.push([format!("largest {beam}.{}", short(one)), quantity(value, one.unit(), 4)]);
-        }
+        line(beam, summary.probes.get(&format!("{beam}{}", one.name())), one);
     }
     let of_first = |one: &Interest| !beams.is_empty() && matches!(one, Interest::TipU1 | Interest::TipU3);
     for one in SHOWN.into_iter().filter(|one| !of_first(one)) {
-        if let Some(value) = quantities.get(one.name()).and_then(|q| q.window_max_abs) {
-            lines.push([format!("largest {}", short(one)), quantity(value, one.unit(), 4)]);
-        }
+        line("", quantities.get(one.name()), one);
     }
     lines.extend(energies::lines(quantities, period, error));
     aligned(&lines, &[0, 1])
@@ -274,11 +273,8 @@ pub fn slopes(summary: &Summary) -> String {
             let figure = |q: &results::run::Quantity| q.window.or(q.window_max_abs);
             let value = summary.quantities.get(one.name()).and_then(figure)?;
             let slope = by.quantities.get(one.name()).and_then(figure)?;
-            let ratio = slope * by.value / value;
-            let sign = if ratio > 0.0 { "+" } else { "" };
-            ratio
-                .is_finite()
-                .then(|| format!("{largest}{words} {sign}{} %", significant(ratio, 3)))
+            let change = change(slope * by.value / value)?;
+            Some(format!("{largest}{words} {change}"))
         });
         format!("{pointer} +1 %: {}\n", parts.collect::<Vec<_>>().join(", "))
     };

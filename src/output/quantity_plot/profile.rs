@@ -40,23 +40,10 @@ impl Rows {
 
     /// Some rows of an array, by ascending number.
     fn rows(&mut self, name: &str, wanted: &[usize]) -> Result<Vec<Vec<f64>>> {
-        let path = &self.path;
-        let mut read = || -> std::io::Result<Vec<Vec<f64>>> {
-            let mut rows = self.npz.rows(name)?;
-            let mut all = vec![];
-            let last = wanted.iter().max().map_or(0, |last| last + 1);
-            for k in 0..last {
-                let mut row = vec![];
-                if wanted.contains(&k) {
-                    rows.next(&mut row)?;
-                    all.push(row);
-                } else {
-                    rows.pass()?;
-                }
-            }
-            Ok(all)
-        };
-        read().map_err(|e| fault("read", path, e))
+        let mut all = vec![];
+        let found = self.npz.chosen(name, wanted, &mut |row| all.push(row.to_vec()));
+        found.map_err(|e| fault("read", &self.path, e))?;
+        Ok(all)
     }
 }
 

@@ -48,9 +48,7 @@ pub fn read(path: &Path, frequency: Option<f64>) -> io::Result<Value> {
     let kept: Vec<f64> = chosen.iter().map(|&k| times[k]).collect();
     let alone: Vec<Vec<usize>> = nodes.iter().map(|&k| vec![k]).collect();
     // cells on both sides of each node
-    let parts = placed
-        .as_ref()
-        .map_or_else(|| std::iter::once(0..theta.len()).collect(), PlacedNodes::parts);
+    let parts = placed::parts(theta.len(), placed.as_ref());
     let beside: Vec<Vec<usize>> = (nodes.iter())
         .map(|&k| {
             let before = parts.partition_point(|part| part.end <= k);
@@ -75,7 +73,12 @@ pub fn read(path: &Path, frequency: Option<f64>) -> io::Result<Value> {
             );
             return Err(damaged(why));
         }
-        Ok(base64::numbers(rows(&mut npz, name, &chosen, groups)?))
+        let mut means = Vec::with_capacity(chosen.len() * groups.len());
+        npz.chosen(name, &chosen, &mut |row| {
+            means.extend(groups.iter().map(|g| mean(g, row)))
+        })?
+        .finish()?;
+        Ok(base64::numbers(means))
     };
     let (span, cycle) = plot::instants(&kept, frequency, CURVES);
     let first = |values: &[f64]| base64::numbers(groups.iter().map(|g| mean(g, values)));
@@ -128,24 +131,6 @@ fn pressure_groups(bladder: &[f64]) -> Vec<Vec<usize>> {
 fn mean(group: &[usize], values: &[f64]) -> f64 {
     let sum: f64 = group.iter().map(|&k| values.get(k).copied().unwrap_or(f64::NAN)).sum();
     sum / group.len() as f64
-}
-
-/// Means over groups of places at chosen instants.
-fn rows(npz: &mut Npz, name: &str, chosen: &[usize], groups: &[Vec<usize>]) -> io::Result<Vec<f64>> {
-    let mut rows = npz.rows(name)?;
-    let mut out = Vec::with_capacity(chosen.len() * groups.len());
-    let mut row = vec![];
-    let mut at = 0;
-    for &instant in chosen {
-        for _ in at..instant {
-            rows.pass()?;
-        }
-        rows.next(&mut row)?;
-        at = instant + 1;
-        out.extend(groups.iter().map(|g| mean(g, &row)));
-    }
-    rows.finish()?;
-    Ok(out)
 }
 
 #[cfg(test)]

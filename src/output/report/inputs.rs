@@ -2,8 +2,7 @@
 
 use serde_json::{Value, json};
 
-use super::base64;
-use crate::case::schema::Load;
+use super::{base64, scene};
 use crate::case::{Case, ResolvedEnd, Rotation, Translation};
 use crate::functions::Signal;
 use crate::model::ResolvedNetwork;
@@ -55,19 +54,10 @@ fn values(signal: &Signal, times: &[f64], joined: bool) -> Vec<f64> {
 
 fn loads(case: &Case) -> Vec<Input<'_>> {
     let distributed = case.loads.iter().enumerate().filter_map(|(k, load)| {
-        let (what, unit) = match load {
-            Load::ForceXNM(_) => ("force across", "N/m"),
-            Load::ForceZNM(_) => ("force along", "N/m"),
-            Load::ForceNormalNM(_) => ("force normal to the beam", "N/m"),
-            Load::ForceTangentialNM(_) => ("force tangential to the beam", "N/m"),
-            Load::MomentXN(_) | Load::MomentZN(_) => ("couple", "N"),
-            Load::BodyXMS2(_) => ("body force across", "m/s^2"),
-            Load::BodyZMS2(_) => ("body force along", "m/s^2"),
-            Load::RestCurvature(_) => ("curvature at rest", "1/m"),
-            Load::Gravity { .. } => return None,
-        };
+        let (name, distributed) = load.distributed()?;
+        let [_, what, unit] = scene::words_of(name);
         let label = format!("load {}: {what}", k + 1);
-        Some((label, unit, &load.distributed()?.1.signal))
+        Some((label, unit, &distributed.signal))
     });
     let attached = case.attachments.iter().enumerate().flat_map(|(k, one)| {
         let label = move |key: &str| format!("attachment {}: {}", k + 1, key.trim_end_matches("_n").replace('_', " "));

@@ -1,5 +1,7 @@
 //! Nodes of a structure on a page: their beams, and their places in the straight structure.
 
+use std::ops::Range;
+
 use serde_json::{Value, json};
 
 use super::{Place, base64};
@@ -25,11 +27,15 @@ pub fn add(page: &mut Value, placed: Option<&PlacedNodes>, chosen: &[usize]) {
     });
 }
 
+/// Ranges of the nodes `0..len` of each part between joints.
+pub fn parts(len: usize, placed: Option<&PlacedNodes>) -> Vec<Range<usize>> {
+    placed.map_or_else(|| std::iter::once(0..len).collect(), PlacedNodes::parts)
+}
+
 /// Nodes `0..len` at constant steps with both ends, about `most` of them; in a structure with both ends of each part.
 pub fn thinned_nodes(len: usize, placed: Option<&PlacedNodes>, most: usize) -> Vec<usize> {
-    let parts = placed.map_or_else(|| std::iter::once(0..len).collect(), PlacedNodes::parts);
     let share = |part: usize| (most * part / len.max(1)).max(2);
-    let each = parts.into_iter().map(|part| {
+    let each = parts(len, placed).into_iter().map(|part| {
         let own = super::frames::thinned(part.len(), share(part.len()));
         own.into_iter().map(move |k| part.start + k).collect::<Vec<_>>()
     });

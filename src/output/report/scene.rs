@@ -262,16 +262,7 @@ pub fn load(load: &Load, end_s: f64) -> Value {
         let size = q(x_m_s2.hypot(*z_m_s2), "m/s^2").replace("^2", "²");
         return json!({"kind": "gravity", "x": x_m_s2, "z": z_m_s2, "words": format!("gravity {size}")});
     };
-    let (kind, what, unit) = match name {
-        "force_x_n_m" => ("across", "force across", "N/m"),
-        "force_z_n_m" => ("along", "force along", "N/m"),
-        "force_normal_n_m" => ("across", "force normal to the beam", "N/m"),
-        "force_tangential_n_m" => ("along", "force tangential to the beam", "N/m"),
-        "body_x_m_s2" => ("across", "body force across", "m/s²"),
-        "body_z_m_s2" => ("along", "body force along", "m/s²"),
-        "rest_curvature_1_m" => ("moment", "curvature at rest", "1/m"),
-        _ => ("moment", "couple", "N"),
-    };
+    let [kind, what, unit] = words_of(name);
     let sign = match peak(&distributed.signal, end_s) {
         p if p < 0.0 => -1.0,
         _ => 1.0,
@@ -288,5 +279,19 @@ pub fn load(load: &Load, end_s: f64) -> Value {
         .iter()
         .map(|x| if largest > 0.0 { x / largest } else { 0.0 })
         .collect();
-    json!({"kind": kind, "values": scaled, "words": format!("{what}: {}{shape}", describe(&distributed.signal, unit))})
+    json!({"kind": kind, "values": scaled, "words": format!("{what}: {}{shape}", describe(&distributed.signal, &unit.replace("^2", "²")))})
+}
+
+/// Direction of a distributed load in the drawing, its description and unit, by its name in the case.
+pub fn words_of(name: &str) -> [&'static str; 3] {
+    match name {
+        "force_x_n_m" => ["across", "force across", "N/m"],
+        "force_z_n_m" => ["along", "force along", "N/m"],
+        "force_normal_n_m" => ["across", "force normal to the beam", "N/m"],
+        "force_tangential_n_m" => ["along", "force tangential to the beam", "N/m"],
+        "body_x_m_s2" => ["across", "body force across", "m/s^2"],
+        "body_z_m_s2" => ["along", "body force along", "m/s^2"],
+        "rest_curvature_1_m" => ["moment", "curvature at rest", "1/m"],
+        _ => ["moment", "couple", "N"],
+    }
 }
