@@ -32,13 +32,11 @@ fn euler() -> SolvedProblem {
         ],
         || {
             let [load] = on_three_meshes(20, |cells| {
-                let mut case = load_path(unit_beam(1000.0), cells, 1.0, 1.0);
-                case["ends"]["tip"] = json!({"free": {"force_z_n": growing(-EULER)}});
+                let pressed = json!({"free": {"force_z_n": growing(-EULER)}});
+                let case = load_path(unit_beam(1000.0), cells, pressed);
                 Ok([EULER * balance(&case, 1.01)?.bifurcation()])
             })?;
-            Ok(vec![
-                ExactFigure::relative("P L^2/EI", load[2], EULER, 5e-5).on_meshes(load, 1e-6),
-            ])
+            Ok(vec![ExactFigure::on_meshes("P L^2/EI", load, EULER, 5e-5, 1e-6)])
         },
     )
 }
@@ -54,14 +52,11 @@ fn self_weight() -> SolvedProblem {
         ],
         || {
             let [load] = on_three_meshes(20, |cells| {
-                let mut case = load_path(unit_beam(1000.0), cells, 1.0, 1.0);
-                case["ends"]["tip"] = json!({"free": {}});
+                let mut case = load_path(unit_beam(1000.0), cells, json!("free"));
                 case["loads"] = json!([{"force_z_n_m": {"signal": growing(-EXACT)}}]);
                 Ok([EXACT * balance(&case, 1.01)?.bifurcation()])
             })?;
-            Ok(vec![
-                ExactFigure::relative("q L^3/EI", load[2], EXACT, 1.6e-4).on_meshes(load, 1e-6),
-            ])
+            Ok(vec![ExactFigure::on_meshes("q L^3/EI", load, EXACT, 1.6e-4, 1e-6)])
         },
     )
 }
@@ -77,20 +72,22 @@ fn elastica(degrees: u32, ratio: f64, place: Option<[f64; 2]>) -> SolvedProblem 
         ],
         move || {
             let [angle, z, x] = on_three_meshes(80, |cells| {
-                let mut case = load_path(unit_beam(1000.0), cells, 1.0, 1.0);
-                case["ends"]["tip"] = json!({"free": {"force_z_n": growing(-ratio * EULER)}});
-                let solved = balance(&case, 1.0)?;
+                let pressed = json!({"free": {"force_z_n": growing(-ratio * EULER)}});
+                let solved = balance(&load_path(unit_beam(1000.0), cells, pressed), 1.0)?;
                 let degrees = solved.last("tip_angle").to_degrees();
                 Ok([degrees, 1.0 + solved.last("tip_u3"), solved.last("tip_u1")])
             })?;
             let magnified = 4.0 / f64::from(degrees).to_radians().powi(2);
-            let mut figures = vec![
-                ExactFigure::relative("tip angle [degrees]", angle[2], f64::from(degrees), 4e-6 * magnified)
-                    .on_meshes(angle, 3e-8 * magnified),
-            ];
+            let mut figures = vec![ExactFigure::on_meshes(
+                "tip angle [degrees]",
+                angle,
+                f64::from(degrees),
+                4e-6 * magnified,
+                3e-8 * magnified,
+            )];
             if let Some([along, across]) = place {
-                figures.push(ExactFigure::relative("x/L", z[2], along, 2e-5).on_meshes(z, 2e-7));
-                figures.push(ExactFigure::relative("y/L", x[2], across, 2e-5).on_meshes(x, 2e-7));
+                figures.push(ExactFigure::on_meshes("x/L", z, along, 2e-5, 2e-7));
+                figures.push(ExactFigure::on_meshes("y/L", x, across, 2e-5, 2e-7));
             }
             Ok(figures)
         },

@@ -1,7 +1,6 @@
 //! Mathieu's tongue from multipliers of the period map: its edges, and growth with damping.
 
 use std::f64::consts::TAU;
-use std::path::Path;
 
 use serde_json::{Value, json};
 
@@ -9,8 +8,7 @@ use super::figure::ExactFigure;
 use super::fit::secant;
 use super::problem::SolvedProblem;
 use super::scene::unit_beam;
-use super::solve::on_three_meshes;
-use crate::case;
+use super::solve::{on_three_meshes, parse};
 use crate::error::Result;
 use crate::model::characteristic::{MATHIEU_COUPLING, mathieu_growth};
 use crate::run::floquet::{self, Multiplier, shape::EnergyPart};
@@ -41,10 +39,8 @@ pub fn rows() -> Vec<SolvedProblem> {
                 let [lower, upper] = on_three_meshes(6, |cells| Ok([edge(cells, -1.0)?, edge(cells, 1.0)?]))?;
                 let bound = (BETA / 24.0).powi(2) / 3.0;
                 Ok(vec![
-                    ExactFigure::relative("lower edge W/(2 w1)", lower[2], exact_edge(-1.0), bound)
-                        .on_meshes(lower, 3e-4),
-                    ExactFigure::relative("upper edge W/(2 w1)", upper[2], exact_edge(1.0), bound)
-                        .on_meshes(upper, 3e-4),
+                    ExactFigure::on_meshes("lower edge W/(2 w1)", lower, exact_edge(-1.0), bound, 3e-4),
+                    ExactFigure::on_meshes("upper edge W/(2 w1)", upper, exact_edge(1.0), bound, 3e-4),
                 ])
             },
         ),
@@ -94,7 +90,7 @@ fn first(cells: usize, ratio: f64, (epsilon, zeta): (f64, f64)) -> Result<Vec<Mu
 
 /// Multipliers of the first bending mode of a case, largest first.
 pub fn bending(case: &Value) -> Result<Vec<Multiplier>> {
-    let case = case::parse(&case.to_string(), Path::new("verify.json"), Path::new(""), &[])?;
+    let case = parse(case)?;
     let scene = PeriodicScene::new(&case, None)?;
     let mut cycle = shoot(&scene, None).map_err(fault)?;
     let mut found = floquet::multipliers(&scene, &mut cycle, COUNT).multipliers;

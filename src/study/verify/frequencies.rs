@@ -53,9 +53,13 @@ fn frequency(name: String, mode: usize, beta: f64, tip: Value) -> SolvedProblem 
             let exact = beta * beta;
             let [w] = on_three_meshes(16, |cells| Ok([transverse(cells, mode, &tip)?]))?;
             let bound = (beta * beta / 10.0 + beta / 2.0) / 64.0_f64.powi(2);
-            Ok(vec![
-                ExactFigure::relative("w L^2 sqrt(m/EI)", w[2], exact, bound).on_meshes(w, (beta / 32.0).powi(4)),
-            ])
+            Ok(vec![ExactFigure::on_meshes(
+                "w L^2 sqrt(m/EI)",
+                w,
+                exact,
+                bound,
+                (beta / 32.0).powi(4),
+            )])
         },
     )
 }

@@ -2,7 +2,6 @@
 //! first order omit.
 
 use std::f64::consts::TAU;
-use std::path::Path;
 
 use nalgebra::{DMatrix, DVector};
 use serde_json::json;
@@ -11,8 +10,7 @@ use super::figure::ExactFigure;
 use super::fit::secant;
 use super::floquet::{above_tongue, bending};
 use super::problem::SolvedProblem;
-use super::solve::on_three_meshes;
-use crate::case;
+use super::solve::{on_three_meshes, parse};
 use crate::error::Result;
 use crate::model::{Model, Section};
 
@@ -54,7 +52,7 @@ pub fn rows() -> Vec<SolvedProblem> {
             let onset = on_three_meshes(10, |cells| Ok([of_program(cells)?]))?;
             let [values] = onset;
             Ok(vec![
-                ExactFigure::relative("onset U3/l", values[2], exact, 4e-3).on_meshes(values, 1e-3),
+                ExactFigure::on_meshes("onset U3/l", values, exact, 4e-3, 1e-3),
                 ExactFigure::relative("of one mode, unstretched", single()?, 0.3134, 1e-3),
             ])
         },
@@ -75,9 +73,7 @@ fn case_of(amplitude: f64, cells: usize) -> serde_json::Value {
 }
 
 fn section() -> Result<(Section, f64)> {
-    let text = case_of(0.03, 10).to_string();
-    let case = case::parse(&text, Path::new("verify.json"), Path::new(""), &[])?;
-    let model = Model::new(&case)?;
+    let model = Model::new(&parse(&case_of(0.03, 10))?)?;
     Ok((model.section, model.length))
 }
 

@@ -4,11 +4,19 @@ use std::path::Path;
 
 use serde_json::Value;
 
-use crate::case;
+use crate::case::{self, Case};
 use crate::error::{Error, Result};
 use crate::run::modes::{self, ModeOptions, Modes};
 use crate::run::record::{Control, HistoryColumn, Memory};
 use crate::run::{dynamics, equilibrium};
+
+/// Checks a case.
+///
+/// # Errors
+/// A case that is not valid.
+pub fn parse(case: &Value) -> Result<Case> {
+    case::parse(&case.to_string(), Path::new("verify.json"), Path::new(""), &[])
+}
 
 /// Recorded data of a run.
 pub struct SolvedRun {
@@ -20,7 +28,7 @@ pub struct SolvedRun {
 /// # Errors
 /// A case that is not valid, a solver that fails.
 pub fn solve(case: &Value) -> Result<SolvedRun> {
-    let case = case::parse(&case.to_string(), Path::new("verify.json"), Path::new(""), &[])?;
+    let case = parse(case)?;
     let mut memory = Memory::default();
     let outcome = dynamics::run(&case, &mut memory)?;
     match outcome.fault {
@@ -34,7 +42,7 @@ pub fn solve(case: &Value) -> Result<SolvedRun> {
 /// # Errors
 /// A case that is not valid, eigenvalues that do not converge.
 pub fn modes(case: &Value, count: usize) -> Result<Modes> {
-    let case = case::parse(&case.to_string(), Path::new("verify.json"), Path::new(""), &[])?;
+    let case = parse(case)?;
     let plan = ModeOptions {
         count,
         near_hz: 0.0,
@@ -71,7 +79,7 @@ pub struct SolvedPath {
 /// # Errors
 /// A case that is not valid, a path that ends early.
 pub fn balance(case: &Value, share: f64) -> Result<SolvedPath> {
-    let case = case::parse(&case.to_string(), Path::new("verify.json"), Path::new(""), &[])?;
+    let case = parse(case)?;
     let at_s = case.time.end_s;
     let options = equilibrium::EquilibriumOptions {
         share,

@@ -61,9 +61,8 @@ fn end_moment((name, k): (&'static str, f64)) -> SolvedProblem {
         ],
         move || {
             let [u, w, angle] = on_three_meshes(CELLS, |cells| {
-                let mut case = load_path(unit_beam(1.0), cells, 1.0, 1.0);
-                case["ends"]["tip"] = json!({"free": {"moment_n_m": growing(-k)}});
-                tip(&case)
+                let turned = json!({"free": {"moment_n_m": growing(-k)}});
+                tip(&load_path(unit_beam(1.0), cells, turned))
             })?;
             let exact = [1.0 - k.sin() / k, (1.0 - k.cos()) / k];
             let bound = (k / (4 * CELLS) as f64).powi(2) / 12.0;
@@ -73,7 +72,7 @@ fn end_moment((name, k): (&'static str, f64)) -> SolvedProblem {
                 if full_turns {
                     figure
                 } else {
-                    figure.on_meshes(values, 1e-7)
+                    figure.with_meshes(values, 1e-7)
                 }
             };
             let mut figures = vec![
@@ -89,15 +88,13 @@ fn end_moment((name, k): (&'static str, f64)) -> SolvedProblem {
     )
 }
 
-/// Shortening, deflection and angle on three meshes.
-fn cantilever(values: [[f64; 3]; 3], exact: [f64; 3], tolerance: f64, limit: f64) -> Vec<ExactFigure> {
-    ["shortening u/L", "deflection w/L", "tip angle [rad]"]
-        .into_iter()
-        .zip(values)
-        .zip(exact)
-        .map(|((name, values), exact)| {
-            ExactFigure::relative(name, values[2], exact, tolerance).on_meshes(values, limit)
-        })
+/// Figures of [`tip`].
+const TIP: [&str; 3] = ["shortening u/L", "deflection w/L", "tip angle [rad]"];
+
+/// Figures of the tip on three meshes.
+fn on_meshes(names: [&str; 3], values: [[f64; 3]; 3], exact: [f64; 3], tolerance: f64) -> Vec<ExactFigure> {
+    let all = names.into_iter().zip(values).zip(exact);
+    all.map(|((name, values), exact)| ExactFigure::on_meshes(name, values, exact, tolerance, 1e-6))
         .collect()
 }
 
@@ -111,11 +108,10 @@ fn tip_load((load, exact): (u32, [f64; 3])) -> SolvedProblem {
         ],
         move || {
             let values = on_three_meshes(CELLS, |cells| {
-                let mut case = load_path(unit_beam(1000.0), cells, 1.0, 1.0);
-                case["ends"]["tip"] = json!({"free": {"force_x_n": growing(f64::from(load))}});
-                tip(&case)
+                let pulled = json!({"free": {"force_x_n": growing(f64::from(load))}});
+                tip(&load_path(unit_beam(1000.0), cells, pulled))
             })?;
-            Ok(cantilever(values, exact, 8e-5, 1e-6))
+            Ok(on_meshes(TIP, values, exact, 8e-5))
         },
     )
 }
@@ -134,22 +130,17 @@ fn tip_load_stretch() -> SolvedProblem {
             });
             let force = 3.0 * 2.07e11 * 0.1_f64.powi(4) / 12.0 / 4.0;
             let values = on_three_meshes(CELLS, |cells| {
-                let mut case = load_path(beam.clone(), cells, 1.0, 1.0);
-                case["ends"]["tip"] = json!({"free": {"force_x_n": growing(-force)}});
-                let solved = balance(&case, 1.0)?;
+                let pulled = json!({"free": {"force_x_n": growing(-force)}});
+                let solved = balance(&load_path(beam.clone(), cells, pulled), 1.0)?;
                 Ok(["tip_u3", "tip_u1", "tip_angle"].map(|name| solved.last(name)))
             })?;
             let exact = [-0.508537304326, -1.207239854550, -0.986237330266];
-            Ok([
+            let names = [
                 "axial displacement [m]",
                 "transverse displacement [m]",
                 "tip angle [rad]",
-            ]
-            .into_iter()
-            .zip(values)
-            .zip(exact)
-            .map(|((name, values), exact)| ExactFigure::relative(name, values[2], exact, 8e-5).on_meshes(values, 1e-6))
-            .collect())
+            ];
+            Ok(on_meshes(names, values, exact, 8e-5))
         },
     )
 }
@@ -164,11 +155,11 @@ fn uniform_load((load, exact): (u32, [f64; 3])) -> SolvedProblem {
         ],
         move || {
             let values = on_three_meshes(CELLS, |cells| {
-                let mut case = load_path(unit_beam(1000.0), cells, 1.0, 1.0);
+                let mut case = load_path(unit_beam(1000.0), cells, json!("free"));
                 case["loads"] = json!([{"force_x_n_m": {"signal": growing(f64::from(load))}}]);
                 tip(&case)
             })?;
-            Ok(cantilever(values, exact, 1.2e-4, 1e-6))
+            Ok(on_meshes(TIP, values, exact, 1.2e-4))
         },
     )
 }
