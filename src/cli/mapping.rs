@@ -24,34 +24,27 @@ pub fn mapping(asked: &MappingArguments) -> Result<ExitCode> {
         return usage("the tables map equal segments with equal bladders: they are not available with /spans");
     }
     let map = network_coordinate(&case, wet);
-    let tables = [
-        (
-            MapTable::ThetaToXf,
-            "theta_to_xf",
-            ["theta_r", "x_f"],
-            map.theta_to_xf(),
-        ),
-        (MapTable::XfToTheta, "xf_to_theta", ["x_f", "theta"], map.xf_to_theta()),
+    let (theta, xf) = (map.theta_to_xf(), map.xf_to_theta());
+    let all = [
+        (MapTable::ThetaToXf, "theta_to_xf", ["theta_r", "x_f"], &theta),
+        (MapTable::XfToTheta, "xf_to_theta", ["x_f", "theta"], &xf),
     ];
-    let wanted = |table: &MapTable| asked.table.is_none_or(|own| own == *table);
-    let shown = || tables.iter().filter(|(table, ..)| wanted(table));
+    let wanted = |table: MapTable| asked.table.is_none_or(|own| own == table);
+    let shown = || all.into_iter().filter(|(table, ..)| wanted(*table));
     let value = || {
-        let table = |(_, name, [a, b], rows): &(_, &str, [&str; 2], Vec<(f64, f64, i64)>)| {
-            let row = |(x, y, bladder): &_| json!({*a: x, *b: y, "bladder": bladder});
-            ((*name).to_owned(), rows.iter().map(row).collect())
-        };
-        Value::Object(shown().map(table).collect())
+        let table = shown().map(|(_, name, [a, b], rows)| {
+            let row = |(x, y, bladder): &_| json!({a: x, b: y, "bladder": bladder});
+            (name.to_owned(), rows.iter().map(row).collect())
+        });
+        Value::Object(table.collect())
     };
     let text = || {
-        let table = |(.., names, rows): &(_, _, [&str; 2], Vec<(f64, f64, i64)>)| {
+        let table = shown().map(|(_, _, names, rows)| {
             let row = |(x, y, bladder): &(f64, f64, i64)| format!("{},{},{bladder}\n", rounded(*x, 6), rounded(*y, 6));
-            format!(
-                "{},bladder\n{}",
-                names.join(","),
-                rows.iter().map(row).collect::<String>()
-            )
-        };
-        joined(shown().map(table), "\n")
+            let lines: String = rows.iter().map(row).collect();
+            format!("{},bladder\n{lines}", names.join(","))
+        });
+        joined(table, "\n")
     };
     super::answer(asked.json, value, text)
 }

@@ -116,7 +116,7 @@ fn line(row: &VerifiedRow, figure: &VerifiedFigure) -> [String; 10] {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::error::Error;
+    use crate::error::usage;
     use crate::study::verify::ExactFigure;
 
     fn row(figures: Result<Vec<ExactFigure>>) -> VerifiedRow {

@@ -87,8 +87,8 @@ fn flutter() -> SolvedProblem {
         || {
             let [load, frequency] = on_three_meshes(20, onset)?;
             Ok(vec![
-                ExactFigure::on_meshes("P L^2/EI", load, LOAD, 1.5e-3, 4e-5),
-                ExactFigure::on_meshes("w L^2 sqrt(m/EI)", frequency, FREQUENCY, 1.5e-3, 4e-5),
+                ExactFigure::converging("P L^2/EI", load, LOAD, 1.5e-3, 4e-5),
+                ExactFigure::converging("w L^2 sqrt(m/EI)", frequency, FREQUENCY, 1.5e-3, 4e-5),
             ])
         },
     )

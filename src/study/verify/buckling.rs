@@ -36,7 +36,7 @@ fn euler() -> SolvedProblem {
                 let case = load_path(unit_beam(1000.0), cells, pressed);
                 Ok([EULER * balance(&case, 1.01)?.bifurcation()])
             })?;
-            Ok(vec![ExactFigure::on_meshes("P L^2/EI", load, EULER, 5e-5, 1e-6)])
+            Ok(vec![ExactFigure::converging("P L^2/EI", load, EULER, 5e-5, 1e-6)])
         },
     )
 }
@@ -56,7 +56,7 @@ fn self_weight() -> SolvedProblem {
                 case["loads"] = json!([{"force_z_n_m": {"signal": growing(-EXACT)}}]);
                 Ok([EXACT * balance(&case, 1.01)?.bifurcation()])
             })?;
-            Ok(vec![ExactFigure::on_meshes("q L^3/EI", load, EXACT, 1.6e-4, 1e-6)])
+            Ok(vec![ExactFigure::converging("q L^3/EI", load, EXACT, 1.6e-4, 1e-6)])
         },
     )
 }
@@ -78,7 +78,7 @@ fn elastica(degrees: u32, ratio: f64, place: Option<[f64; 2]>) -> SolvedProblem 
                 Ok([degrees, 1.0 + solved.last("tip_u3"), solved.last("tip_u1")])
             })?;
             let magnified = 4.0 / f64::from(degrees).to_radians().powi(2);
-            let mut figures = vec![ExactFigure::on_meshes(
+            let mut figures = vec![ExactFigure::converging(
                 "tip angle [degrees]",
                 angle,
                 f64::from(degrees),
@@ -86,8 +86,8 @@ fn elastica(degrees: u32, ratio: f64, place: Option<[f64; 2]>) -> SolvedProblem 
                 3e-8 * magnified,
             )];
             if let Some([along, across]) = place {
-                figures.push(ExactFigure::on_meshes("x/L", z, along, 2e-5, 2e-7));
-                figures.push(ExactFigure::on_meshes("y/L", x, across, 2e-5, 2e-7));
+                figures.push(ExactFigure::converging("x/L", z, along, 2e-5, 2e-7));
+                figures.push(ExactFigure::converging("y/L", x, across, 2e-5, 2e-7));
             }
             Ok(figures)
         },

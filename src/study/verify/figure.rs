@@ -66,15 +66,15 @@ impl ExactFigure {
         }
     }
 
-    /// Creates a number from its values on three meshes, as [`ExactFigure::with_meshes`], with a tolerance relative to its
+    /// Creates a number from its values on three meshes, as [`ExactFigure::on_meshes`], with a tolerance relative to its
     /// exact value.
-    pub fn on_meshes(quantity: &str, values: [f64; 3], exact: f64, tolerance: f64, limit: f64) -> Self {
-        Self::relative(quantity, values[2], exact, tolerance).with_meshes(values, limit)
+    pub fn converging(quantity: &str, values: [f64; 3], exact: f64, tolerance: f64, limit: f64) -> Self {
+        Self::relative(quantity, values[2], exact, tolerance).on_meshes(values, limit)
     }
 
     /// Adds the values on three meshes, each twice as fine as the previous one. They must show second order, and an
     /// error of the limit of at most `limit`.
-    pub fn with_meshes(self, values: [f64; 3], limit: f64) -> Self {
+    pub fn on_meshes(self, values: [f64; 3], limit: f64) -> Self {
         let [_, middle, fine] = values;
         let order = ((middle - self.exact) / (fine - self.exact)).abs().log2();
         let extrapolated = Self {

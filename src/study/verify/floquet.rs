@@ -39,8 +39,8 @@ pub fn rows() -> Vec<SolvedProblem> {
                 let [lower, upper] = on_three_meshes(6, |cells| Ok([edge(cells, -1.0)?, edge(cells, 1.0)?]))?;
                 let bound = (BETA / 24.0).powi(2) / 3.0;
                 Ok(vec![
-                    ExactFigure::on_meshes("lower edge W/(2 w1)", lower, exact_edge(-1.0), bound, 3e-4),
-                    ExactFigure::on_meshes("upper edge W/(2 w1)", upper, exact_edge(1.0), bound, 3e-4),
+                    ExactFigure::converging("lower edge W/(2 w1)", lower, exact_edge(-1.0), bound, 3e-4),
+                    ExactFigure::converging("upper edge W/(2 w1)", upper, exact_edge(1.0), bound, 3e-4),
                 ])
             },
         ),

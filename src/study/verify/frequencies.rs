@@ -53,7 +53,7 @@ fn frequency(name: String, mode: usize, beta: f64, tip: Value) -> SolvedProblem 
             let exact = beta * beta;
             let [w] = on_three_meshes(16, |cells| Ok([transverse(cells, mode, &tip)?]))?;
             let bound = (beta * beta / 10.0 + beta / 2.0) / 64.0_f64.powi(2);
-            Ok(vec![ExactFigure::on_meshes(
+            Ok(vec![ExactFigure::converging(
                 "w L^2 sqrt(m/EI)",
                 w,
                 exact,

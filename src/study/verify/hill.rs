@@ -52,7 +52,7 @@ pub fn rows() -> Vec<SolvedProblem> {
             let onset = on_three_meshes(10, |cells| Ok([of_program(cells)?]))?;
             let [values] = onset;
             Ok(vec![
-                ExactFigure::on_meshes("onset U3/l", values, exact, 4e-3, 1e-3),
+                ExactFigure::converging("onset U3/l", values, exact, 4e-3, 1e-3),
                 ExactFigure::relative("of one mode, unstretched", single()?, 0.3134, 1e-3),
             ])
         },

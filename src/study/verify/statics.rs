@@ -72,7 +72,7 @@ fn end_moment((name, k): (&'static str, f64)) -> SolvedProblem {
                 if full_turns {
                     figure
                 } else {
-                    figure.with_meshes(values, 1e-7)
+                    figure.on_meshes(values, 1e-7)
                 }
             };
             let mut figures = vec![
@@ -92,9 +92,9 @@ fn end_moment((name, k): (&'static str, f64)) -> SolvedProblem {
 const TIP: [&str; 3] = ["shortening u/L", "deflection w/L", "tip angle [rad]"];
 
 /// Figures of the tip on three meshes.
-fn on_meshes(names: [&str; 3], values: [[f64; 3]; 3], exact: [f64; 3], tolerance: f64) -> Vec<ExactFigure> {
+fn of_tip(names: [&str; 3], values: [[f64; 3]; 3], exact: [f64; 3], tolerance: f64) -> Vec<ExactFigure> {
     let all = names.into_iter().zip(values).zip(exact);
-    all.map(|((name, values), exact)| ExactFigure::on_meshes(name, values, exact, tolerance, 1e-6))
+    all.map(|((name, values), exact)| ExactFigure::converging(name, values, exact, tolerance, 1e-6))
         .collect()
 }
 
@@ -111,7 +111,7 @@ fn tip_load((load, exact): (u32, [f64; 3])) -> SolvedProblem {
                 let pulled = json!({"free": {"force_x_n": growing(f64::from(load))}});
                 tip(&load_path(unit_beam(1000.0), cells, pulled))
             })?;
-            Ok(on_meshes(TIP, values, exact, 8e-5))
+            Ok(of_tip(TIP, values, exact, 8e-5))
         },
     )
 }
@@ -140,7 +140,7 @@ fn tip_load_stretch() -> SolvedProblem {
                 "transverse displacement [m]",
                 "tip angle [rad]",
             ];
-            Ok(on_meshes(names, values, exact, 8e-5))
+            Ok(of_tip(names, values, exact, 8e-5))
         },
     )
 }
@@ -159,7 +159,7 @@ fn uniform_load((load, exact): (u32, [f64; 3])) -> SolvedProblem {
                 case["loads"] = json!([{"force_x_n_m": {"signal": growing(f64::from(load))}}]);
                 tip(&case)
             })?;
-            Ok(on_meshes(TIP, values, exact, 1.2e-4))
+            Ok(of_tip(TIP, values, exact, 1.2e-4))
         },
     )
 }
