@@ -32,12 +32,10 @@ pub fn equilibrium(asked: &EquilibriumArguments) -> Result<ExitCode> {
                 points: options.points,
                 ..EquilibriumOptions::at(at_s)
             };
-    if !(usual && asked.accuracy.is_none() || asked.uncertain.uncertain.is_empty()) {
-        let what = "--uncertain applies to the equilibrium under the loads at the end of the run: it cannot be \
-                    combined with --at, --via, --load-factor, --keep-branch or --accuracy. For the loads of another \
-                    instant, use --set /time/end_s=SECONDS";
-        return usage(what);
-    }
+    let alone = "--uncertain applies to the equilibrium under the loads at the end of the run: it cannot be combined with \
+                 --at, --via, --load-factor, --keep-branch or --accuracy. For the loads of another instant, use --set \
+                 /time/end_s=SECONDS";
+    asked.uncertain.refuse(!usual || asked.accuracy.is_some(), alone)?;
     let uncertain = asked
         .uncertain
         .begin(&asked.case, case, AnalysisKind::Equilibrium, asked.result.quiet)?;

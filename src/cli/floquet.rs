@@ -2,7 +2,7 @@
 
 use std::process::ExitCode;
 
-use super::arguments::FloquetArguments;
+use super::arguments::{CaseArguments, FloquetArguments, MapArguments, ResultArguments};
 use super::uncertain;
 use super::{interrupt, journal, progress_line, resources};
 use crate::case::Case;
@@ -29,16 +29,21 @@ const MOST_POINTS: usize = 100_000;
 
 /// Finds cycle and multipliers, or the map; writes the folder, prints the text.
 pub fn floquet(asked: &FloquetArguments) -> Result<ExitCode> {
-    let case = &resources::load(&asked.case)?;
-    scene::system(case)?;
+    let case = &load(&asked.case)?;
+    let alone = "--uncertain applies to one cycle, not to a --map. For a point of the map, use slcbeam floquet CASE --set \
+                 .. --uncertain ..";
+    asked.uncertain.refuse(asked.map.map.is_some(), alone)?;
     match &asked.map.map {
-        Some(_) if !asked.uncertain.uncertain.is_empty() => usage(
-            "--uncertain applies to one cycle, not to a --map. For a point of the map, use slcbeam floquet CASE --set \
-             .. --uncertain ..",
-        ),
-        Some(parameters) => map(asked, case, parameters),
+        Some(parameters) => map(case, (&asked.map, parameters), &asked.result, asked.json),
         None => one(asked, case),
     }
+}
+
+/// Reads a case that can have a cycle.
+pub fn load(asked: &CaseArguments) -> Result<Case> {
+    let case = resources::load(asked)?;
+    scene::system(&case)?;
+    Ok(case)
 }
 
 fn one(asked: &FloquetArguments, case: &Case) -> Result<ExitCode> {
@@ -46,11 +51,11 @@ fn one(asked: &FloquetArguments, case: &Case) -> Result<ExitCode> {
         return usage("--count 0: expected at least 1");
     }
     let accuracy = asked.accuracy.map(progress_line::accuracy).transpose()?;
-    if (accuracy.is_some() || asked.period.is_some()) && !asked.uncertain.uncertain.is_empty() {
-        let what = "--uncertain cannot be combined with --accuracy or --period. After a run with --accuracy, \
-                    floquet.json contains its mesh and tolerance";
-        return usage(what);
-    }
+    let alone = "--uncertain cannot be combined with --accuracy or --period. After a run with --accuracy, floquet.json \
+                 contains its mesh and tolerance";
+    asked
+        .uncertain
+        .refuse(accuracy.is_some() || asked.period.is_some(), alone)?;
     let uncertain = asked
         .uncertain
         .begin(&asked.case, case, AnalysisKind::Floquet, asked.result.quiet)?;
@@ -101,16 +106,22 @@ fn one(asked: &FloquetArguments, case: &Case) -> Result<ExitCode> {
     super::print_result(asked.json, folder.dir(), written, text, words)
 }
 
-fn map(asked: &FloquetArguments, case: &Case, parameters: &str) -> Result<ExitCode> {
+/// Draws a map of a case over `parameters`; writes the folder, prints the text.
+pub fn map(
+    case: &Case,
+    (asked, parameters): (&MapArguments, &str),
+    result: &ResultArguments,
+    json: bool,
+) -> Result<ExitCode> {
     if parameters != "frequency,amplitude" {
         return usage(format!("--map {parameters}: a map is drawn over frequency,amplitude"));
     }
     let plan = plan(asked, tongue::shaking(case)?)?;
-    let mut folder = asked.result.place.claim(case, FolderKind::Map)?;
+    let mut folder = result.place.claim(case, FolderKind::Map)?;
     let evaluations = Evaluations::default();
     journal::begin(&evaluations, &folder, ("map", case, &format!("{plan:?}")))?;
-    let stop = asked.result.wall.stop();
-    let bar = progress_line::line(asked.result.quiet);
+    let stop = result.wall.stop();
+    let bar = progress_line::line(result.quiet);
     let found = tongue::map(case, &plan, &evaluations, &stop, &|done, count| {
         bar.set_message(format!("{done} of {}", counted(count as u64, "column")));
         bar.tick();
@@ -121,23 +132,23 @@ fn map(asked: &FloquetArguments, case: &Case, parameters: &str) -> Result<ExitCo
     let written = files::write_map(&mut folder, &found).and(report::complete(&folder, case));
     let written = journal::end(&evaluations, &folder, stopped, written);
     let words = || files::map_words(&found) + &warnings(&found.warnings);
-    super::print_result(asked.json, folder.dir(), written, || results::text(&found), words)
+    super::print_result(json, folder.dir(), written, || results::text(&found), words)
 }
 
 /// Plan of the map, around the case's own frequency [Hz] and amplitude [m].
-fn plan(asked: &FloquetArguments, own: (f64, f64)) -> Result<MapRange> {
+fn plan(asked: &MapArguments, own: (f64, f64)) -> Result<MapRange> {
     let both = |text: &str| {
         text.split_once(',')
             .map(|(a, b)| (a.trim().to_owned(), b.trim().to_owned()))
     };
-    let counts = both(&asked.map.points).and_then(|(a, b)| Some((a.parse::<usize>().ok()?, b.parse::<usize>().ok()?)));
+    let counts = both(&asked.points).and_then(|(a, b)| Some((a.parse::<usize>().ok()?, b.parse::<usize>().ok()?)));
     let Some((columns, rows)) = counts.filter(|(a, b)| *a > 0 && *b > 0 && a.saturating_mul(*b) <= MOST_POINTS) else {
         return usage(format!(
             "--points {}: two counts such as 21,12, at most {MOST_POINTS} points in all",
-            asked.map.points
+            asked.points
         ));
     };
-    let (frequency, amplitude) = match &asked.map.range {
+    let (frequency, amplitude) = match &asked.range {
         None => ((0.6 * own.0, 1.6 * own.0), (1.5 * own.1 / rows as f64, 1.5 * own.1)),
         Some(text) => both(text)
             .and_then(|(a, b)| Some((progress_line::range(&a)?, progress_line::range(&b)?)))
@@ -147,12 +158,12 @@ fn plan(asked: &FloquetArguments, own: (f64, f64)) -> Result<MapRange> {
                 Error::Usage(format!("--range {text}: {what}"))
             })?,
     };
-    if let Some(wrong) = asked.map.permeability.iter().find(|f| !(f.is_finite() && **f > 0.0)) {
+    if let Some(wrong) = asked.permeability.iter().find(|f| !(f.is_finite() && **f > 0.0)) {
         return usage(format!("--permeability {wrong}: factors > 0"));
     }
     Ok(MapRange {
         frequencies_hz: progress_line::spread(frequency.0, frequency.1, columns, false),
         amplitudes_m: progress_line::spread(amplitude.0, amplitude.1, rows, false),
-        permeability_factors: asked.map.permeability.clone(),
+        permeability_factors: asked.permeability.clone(),
     })
 }

@@ -2,7 +2,8 @@
 
 use std::process::ExitCode;
 
-use super::arguments::{FloquetArguments, ModesArguments};
+use super::arguments::ModesArguments;
+use super::floquet;
 use super::uncertain;
 use super::{progress_line, resources, terminal};
 use crate::case::parameter::Parameter;
@@ -21,34 +22,21 @@ use crate::study::refine;
 
 /// Finds the modes, writes the folder, prints the table and the conclusions.
 pub fn modes(asked: &ModesArguments) -> Result<ExitCode> {
-    if asked.map.map.is_some() {
-        if !asked.uncertain.uncertain.is_empty() {
-            return usage(
-                "--uncertain applies to single modes, not to a --map. For a point of the map, use slcbeam floquet \
-                 CASE --set .. --uncertain ..",
-            );
-        }
-        return super::floquet::floquet(&FloquetArguments {
-            case: asked.case.clone(),
-            count: asked.count,
-            period: None,
-            accuracy: None,
-            map: asked.map.clone(),
-            uncertain: asked.uncertain.clone(),
-            result: asked.result.clone(),
-            json: asked.json,
-        });
+    if let Some(parameters) = &asked.map.map {
+        let alone = "--uncertain applies to single modes, not to a --map. For a point of the map, use slcbeam floquet CASE \
+                     --set .. --uncertain ..";
+        asked.uncertain.refuse(true, alone)?;
+        let case = floquet::load(&asked.case)?;
+        return floquet::map(&case, (&asked.map, parameters), &asked.result, asked.json);
     }
     let plan = plan(asked)?;
     let kind = asked.kind.map(ModeFilter::from);
     let case = resources::load(&asked.case)?;
     let system = System::new(&case)?;
     let own = (asked.at, asked.near, asked.accuracy) == (None, None, None);
-    if !(own || asked.uncertain.uncertain.is_empty()) {
-        let what = "--uncertain applies to the lowest oscillating modes about the start: it cannot be combined with \
-                    --at, --near or --accuracy";
-        return usage(what);
-    }
+    let alone = "--uncertain applies to the lowest oscillating modes about the start: it cannot be combined with --at, \
+                 --near or --accuracy";
+    asked.uncertain.refuse(!own, alone)?;
     let uncertain = asked
         .uncertain
         .begin(&asked.case, &case, AnalysisKind::Modes, asked.result.quiet)?;

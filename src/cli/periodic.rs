@@ -37,11 +37,10 @@ const MOST_VALUES: usize = 10_000;
 
 /// Finds the cycle or the cycles, writes the folder, prints the text.
 pub fn periodic(asked: &PeriodicArguments) -> Result<ExitCode> {
+    let alone = "--uncertain applies to one cycle, not to --sweep. For samples of cycles, use slcbeam sweep CASE \
+                 --command periodic --vary POINTER=normal:MEAN:SD --design sobol:64";
+    asked.uncertain.refuse(asked.sweep.is_some(), alone)?;
     match &asked.sweep {
-        Some(_) if !asked.uncertain.uncertain.is_empty() => usage(
-            "--uncertain applies to one cycle, not to --sweep. For samples of cycles, use slcbeam sweep CASE \
-             --command periodic --vary POINTER=normal:MEAN:SD --design sobol:64",
-        ),
         Some(_) if asked.periods != 1 => usage("--periods applies to one cycle, not to --sweep"),
         Some(text) => sweep(asked, text),
         None => one(asked),
@@ -56,9 +55,9 @@ fn load(asked: &PeriodicArguments, more: Option<String>) -> Result<Case> {
 
 fn one(asked: &PeriodicArguments) -> Result<ExitCode> {
     let case = load(asked, None)?;
-    if !(asked.periods == 1 && asked.accuracy.is_none() || asked.uncertain.uncertain.is_empty()) {
-        return usage("--uncertain cannot be combined with --periods or --accuracy");
-    }
+    let beside = asked.periods != 1 || asked.accuracy.is_some();
+    let alone = "--uncertain cannot be combined with --periods or --accuracy";
+    asked.uncertain.refuse(beside, alone)?;
     let uncertain = asked
         .uncertain
         .begin(&asked.case, &case, AnalysisKind::Periodic, asked.result.quiet)?;

@@ -129,11 +129,10 @@ fn uncertain(
     frequencies: &[f64],
     case: &Case,
 ) -> Result<Option<Uncertain>> {
-    if !asked.uncertain.uncertain.is_empty() && (asked.at.is_some() || asked.from == asked.to) {
-        let what = "--uncertain applies to peaks about the start in a band: it cannot be combined with --at, or with one \
-                    frequency as the band";
-        return usage(what);
-    }
+    let alone = "--uncertain applies to peaks about the start in a band: it cannot be combined with --at, or with one \
+                 frequency as the band";
+    let single = asked.from == asked.to;
+    asked.uncertain.refuse(asked.at.is_some() || single, alone)?;
     let what = AnalysisKind::Response(ResponseAnalysis {
         input: request.input.clone(),
         outputs: request.outputs.clone(),

@@ -43,6 +43,17 @@ pub struct Uncertain {
 }
 
 impl UncertainArguments {
+    /// Rejects uncertain numbers beside something that they cannot be combined with, with a message.
+    ///
+    /// # Errors
+    /// A number is uncertain, and `beside` is true.
+    pub fn refuse(&self, beside: bool, message: &str) -> Result<()> {
+        match beside && !self.uncertain.is_empty() {
+            true => usage(message),
+            false => Ok(()),
+        }
+    }
+
     /// Checks every sample of a case before anything is computed; none if no number is uncertain.
     ///
     /// # Errors

@@ -18,7 +18,7 @@ use super::{interrupt, progress_line, resources, summary_box, terminal};
 use crate::case::Case;
 use crate::case::parameter::Parameter;
 use crate::discrete::System;
-use crate::error::{Result, usage};
+use crate::error::Result;
 use crate::model::Model;
 use crate::output::Labels;
 use crate::output::folder::{FIELDS, HISTORY, ResultFolder, SUMMARY};
@@ -51,11 +51,11 @@ pub fn run(asked: &RunArguments, began: Instant) -> Result<ExitCode> {
         resources::run_fits(case, &system, asked.sensitivities.len(), &out)?;
     }
     let parameters = Parameter::find_all(case, &asked.sensitivities)?;
-    if (asked.accuracy.is_some() || asked.resume) && !asked.uncertain.uncertain.is_empty() {
-        let what = "--uncertain cannot be combined with --accuracy or --resume. After a run with --accuracy, \
-                    summary.json contains its mesh and tolerance";
-        return usage(what);
-    }
+    let alone = "--uncertain cannot be combined with --accuracy or --resume. After a run with --accuracy, summary.json \
+                 contains its mesh and tolerance";
+    asked
+        .uncertain
+        .refuse(asked.accuracy.is_some() || asked.resume, alone)?;
     let mut uncertain = asked
         .uncertain
         .begin(&asked.case, case, AnalysisKind::Run, asked.quiet)?;
