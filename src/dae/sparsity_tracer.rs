@@ -33,19 +33,25 @@ impl DependencyTracer {
         }
         SETS.with_borrow_mut(|sets| {
             let (a, b) = (&sets[self.0 as usize], &sets[other.0 as usize]);
+            if includes(a, b) {
+                return self;
+            }
+            if includes(b, a) {
+                return other;
+            }
             let mut both: Vec<u32> = a.iter().chain(b).copied().collect();
             both.sort_unstable();
             both.dedup();
-            if both.len() == a.len() {
-                return self;
-            }
-            if both.len() == b.len() {
-                return other;
-            }
             sets.push(both);
             Self(sets.len() as u32 - 1)
         })
     }
+}
+
+/// True if an ascending set includes another one. Most unions are of such sets.
+fn includes(whole: &[u32], part: &[u32]) -> bool {
+    let mut rest = whole.iter();
+    part.len() <= whole.len() && part.iter().all(|one| rest.any(|other| other == one))
 }
 
 /// Dependence of each output of an evaluation on unknowns, and on strains by pressure, which are numbered after the unknowns; ascending.

@@ -119,5 +119,6 @@ pub fn kink_slope<T: Scalar>(x: T, width: f64) -> T {
 /// `σ''(X) = d²/(X² + d²)^(3/2)`.
 #[inline]
 pub fn kink_curvature(x: f64, width: f64) -> f64 {
-    width * width / (x * x + width * width).powf(1.5)
+    let squared = x * x + width * width;
+    width * width / (squared * squared.sqrt())
 }

@@ -353,14 +353,22 @@ pub fn mathieu_growth(w2: f64, a: f64, omega: f64) -> f64 {
     let turns = (w2.abs() + a.abs()).sqrt() * period;
     let steps = (300.0 * turns.powf(1.25)).clamp(400.0, 4000.0) as u32;
     let h = period / f64::from(steps);
-    let rate = |t: f64, state: &Matrix2<f64>| Matrix2::new(0.0, 1.0, a * (omega * t).sin() - w2, 0.0) * state;
+    let stiffness = |t: f64| a * (omega * t).sin() - w2;
+    let rate = |of: f64, state: &Matrix2<f64>| {
+        let [[q1, v1], [q2, v2]] = state.data.0;
+        Matrix2::new(v1, v2, of * q1, of * q2)
+    };
     let mut monodromy = Matrix2::identity();
+    let mut end = stiffness(0.0);
     for k in 0..steps {
         let t = h * f64::from(k);
-        let k1 = rate(t, &monodromy);
-        let k2 = rate(t + 0.5 * h, &(monodromy + 0.5 * h * k1));
-        let k3 = rate(t + 0.5 * h, &(monodromy + 0.5 * h * k2));
-        let k4 = rate(t + h, &(monodromy + h * k3));
+        let start = end;
+        let middle = stiffness(t + 0.5 * h);
+        end = stiffness(t + h);
+        let k1 = rate(start, &monodromy);
+        let k2 = rate(middle, &(monodromy + 0.5 * h * k1));
+        let k3 = rate(middle, &(monodromy + 0.5 * h * k2));
+        let k4 = rate(end, &(monodromy + h * k3));
         monodromy += h / 6.0 * (k1 + 2.0 * k2 + 2.0 * k3 + k4);
     }
     let half_trace = 0.5 * monodromy.trace().abs();

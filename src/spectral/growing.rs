@@ -4,8 +4,9 @@ use nalgebra::Complex;
 use slcbeam_dense::real_eigenvalues;
 
 use super::krylov::{FINITE, unit};
-use super::pencil::Shifted;
+use super::pencil::{Shifted, failure};
 use super::{AT_LAST_DENSE, EigenPair, Pencil, SpectralError, refine::refine};
+use crate::sparse::Lu;
 
 /// Bounds on the eigenvalues of interest.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -21,6 +22,9 @@ pub struct Bounds {
 /// Ratio of a real part to its error bound above which its sign is certain.
 const CERTAIN: f64 = 10.0;
 
+/// Relative distances by which the shift is moved if there are no factors.
+const MOVES: [f64; 4] = [0.0, 1e-7, 1e-5, 1e-3];
+
 /// Growing oscillations of a pencil, fastest growth first, one of each conjugate pair. All eigenvalues are computed in real arithmetic
 /// with a real `shift` [1/s]; those within the bounds are refined. None if there are more than [`AT_LAST_DENSE`] differential unknowns.
 ///
@@ -30,33 +34,24 @@ pub fn growing(pencil: &Pencil, shift: f64, bounds: &Bounds) -> Result<Option<Ve
     if !pencil.finite() {
         return Err(SpectralError::NotFinite);
     }
-    let mut shifted = Shifted::new(pencil, Complex::new(shift, 0.0))?;
-    let n = shifted.differential.len();
-    if n > AT_LAST_DENSE {
+    let differential = pencil.differential();
+    if differential.len() > AT_LAST_DENSE {
         return Ok(None);
     }
-    let mut axis = vec![Complex::default(); n];
-    let mut column = axis.clone();
-    let mut columns = Vec::with_capacity(n * n);
-    for j in 0..n {
-        axis[j] = Complex::new(1.0, 0.0);
-        shifted.apply(&axis, &mut column);
-        axis[j] = Complex::default();
-        columns.extend(column.iter().map(|x| x.re));
-    }
-    let shift = shifted.shift.re;
-    let all = real_eigenvalues(n, &|i, j| columns[j * n + i]).ok_or(SpectralError::NotFinite)?;
-    let largest = all.iter().map(|theta| theta.norm()).fold(0.0, f64::max);
     let within = |s: &Complex<f64>| s.re >= bounds.rate && s.im >= bounds.frequency;
-    let finite = all.iter().filter(|theta| theta.norm() > FINITE * largest);
-    let mut found: Vec<_> = finite.map(|theta| shift - theta.inv()).filter(within).collect();
+    let mut found = eigenvalues(pencil, &differential, shift)?;
+    found.retain(within);
     found.sort_by(|a, b| b.re.total_cmp(&a.re));
     found.truncate(bounds.count);
     let mut pairs = Vec::with_capacity(found.len());
+    let Some(first) = found.first() else {
+        return Ok(Some(pairs));
+    };
+    let mut shifted = Shifted::new(pencil, *first)?;
+    let ones = vec![Complex::new(1.0, 0.0); differential.len()];
     for s in found {
         shifted.factor(s)?;
-        axis.fill(Complex::new(1.0, 0.0));
-        let x = unit(shifted.whole(&axis).to_vec());
+        let x = unit(shifted.whole(&ones).to_vec());
         let pair = refine(&mut shifted, s, x)?;
         if within(&pair.s) && pair.s.re > CERTAIN * pair.error {
             pairs.push(pair);
@@ -64,4 +59,39 @@ pub fn growing(pencil: &Pencil, shift: f64, bounds: &Bounds) -> Result<Option<Ve
     }
     pairs.sort_by(|a, b| b.s.re.total_cmp(&a.s.re));
     Ok(Some(pairs))
+}
+
+/// All finite eigenvalues, unrefined, from the operator K of [E32] with a real shift.
+fn eigenvalues(pencil: &Pencil, differential: &[usize], shift: f64) -> Result<Vec<Complex<f64>>, SpectralError> {
+    let mut lu = Lu::new(pencil.pattern).map_err(failure)?;
+    let shift = factor(pencil, shift, &mut lu)?;
+    let n = differential.len();
+    let mut full = vec![0.0; pencil.pattern.columns()];
+    let mut columns = Vec::with_capacity(n * n);
+    for &unknown in differential {
+        full.fill(0.0);
+        for entry in pencil.pattern.column(unknown) {
+            full[pencil.pattern.rows[entry] as usize] = pencil.b[entry];
+        }
+        lu.solve(&mut full);
+        columns.extend(differential.iter().map(|&unknown| full[unknown]));
+    }
+    let all = real_eigenvalues(n, &|i, j| columns[j * n + i]).ok_or(SpectralError::NotFinite)?;
+    let largest = all.iter().map(|theta| theta.norm()).fold(0.0, f64::max);
+    let finite = all.iter().filter(|theta| theta.norm() > FINITE * largest);
+    Ok(finite.map(|theta| shift - theta.inv()).collect())
+}
+
+/// Computes the factors of `A + shift B`, or of a shift as near as possible; returns the shift used.
+fn factor(pencil: &Pencil, shift: f64, lu: &mut Lu) -> Result<f64, SpectralError> {
+    let mut last = SpectralError::Singular { column: 0 };
+    for by in MOVES {
+        let moved = shift * (1.0 + by);
+        let values: Vec<f64> = pencil.a.iter().zip(pencil.b).map(|(a, b)| a + moved * b).collect();
+        match lu.factor(&values) {
+            Ok(()) => return Ok(moved),
+            Err(fault) => last = failure(fault),
+        }
+    }
+    Err(last)
 }

@@ -27,6 +27,12 @@ impl Pencil<'_> {
         self.a.iter().chain(self.b).all(|x| x.is_finite())
     }
 
+    /// Unknowns whose column of B is not zero.
+    pub(super) fn differential(&self) -> Vec<usize> {
+        let in_b = |&j: &usize| self.pattern.column(j).any(|e| self.b[e] != 0.0);
+        (0..self.pattern.columns()).filter(in_b).collect()
+    }
+
     /// `A x` and `B x`.
     pub fn products(&self, x: &[Complex<f64>]) -> (Vec<Complex<f64>>, Vec<Complex<f64>>) {
         let (mut ax, mut bx) = (vec![Complex::default(); x.len()], vec![Complex::default(); x.len()]);
@@ -71,20 +77,16 @@ const MOVES: [f64; 4] = [0.0, 1e-7, 1e-5, 1e-3];
 
 impl<'a> Shifted<'a> {
     pub fn new(pencil: &Pencil<'a>, shift: Complex<f64>) -> Result<Self, SpectralError> {
-        let n = pencil.pattern.columns();
         let entries = pencil.a.iter().zip(pencil.b);
         let values: Vec<_> = entries.map(|(a, b)| shift * *b + a).collect();
         let lu = ComplexLu::new(pencil.pattern, &values).map_err(failure)?;
-        let differential = (0..n)
-            .filter(|&j| pencil.pattern.column(j).any(|e| pencil.b[e] != 0.0))
-            .collect();
         let mut shifted = Self {
             pencil: *pencil,
             shift,
             lu,
-            differential,
+            differential: pencil.differential(),
             values,
-            full: vec![Complex::default(); n],
+            full: vec![Complex::default(); pencil.pattern.columns()],
         };
         shifted.shift = shifted.factor(shift)?;
         Ok(shifted)

@@ -131,6 +131,57 @@ fn dense_and_sparse_agree() {
     }
 }
 
+/// Source: oscillators `x'' - 2 g x' + w² x = 0`, each with an algebraic copy of x: eigenvalues `g ± i √(w² - g²)`. Goal: the growing
+/// oscillations within the bounds, fastest growth first, and no others. Tolerance: the bounds of their errors.
+#[test]
+fn growing_oscillations_within_bounds() {
+    let oscillators: Vec<[f64; 2]> = (1..=30_i32)
+        .map(|k| [0.1 * f64::from(k * (1 - 2 * (k % 2))), 10.0 * f64::from(k)])
+        .collect();
+    let columns = |k: usize| {
+        [
+            vec![3 * k, 3 * k + 1, 3 * k + 2],
+            vec![3 * k, 3 * k + 1],
+            vec![3 * k + 2],
+        ]
+    };
+    let pattern = Pattern::from_columns(&(0..oscillators.len()).flat_map(columns).collect::<Vec<_>>());
+    let a: Vec<f64> = oscillators
+        .iter()
+        .flat_map(|[g, w]| [0.0, w * w, -1.0, -1.0, -2.0 * g, 1.0])
+        .collect();
+    let b = [1.0, 0.0, 0.0, 0.0, 1.0, 0.0].repeat(oscillators.len());
+    let pencil = Pencil {
+        pattern: &pattern,
+        a: &a,
+        b: &b,
+    };
+    let bounds = spectral::Bounds {
+        rate: 0.5,
+        frequency: 100.0,
+        count: 8,
+    };
+    let found = spectral::growing(&pencil, 3.0, &bounds).unwrap().unwrap();
+    let within = oscillators
+        .iter()
+        .rev()
+        .filter(|[g, w]| *g >= 0.5 && w * w - g * g >= 1e4);
+    let expected: Vec<_> = within
+        .take(8)
+        .map(|[g, w]| Complex::new(*g, (w * w - g * g).sqrt()))
+        .collect();
+    assert_eq!(found.len(), 8);
+    for (pair, exact) in found.iter().zip(&expected) {
+        assert!(
+            (pair.s - exact).norm() <= pair.error + 1e-12 * exact.norm(),
+            "{:?} {exact}",
+            pair.s
+        );
+    }
+    let beyond = spectral::Bounds { rate: 3.1, ..bounds };
+    assert_eq!(spectral::growing(&pencil, 3.0, &beyond).unwrap().unwrap(), []);
+}
+
 #[test]
 fn all_finite_eigenvalues_and_no_other() {
     let case = checked(&chains(2, 8.68e-4, 5e-6));
