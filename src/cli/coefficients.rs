@@ -146,12 +146,14 @@ fn write_case(written: &section::SectionFile, path: &Path, asked: &CoefficientsA
         case["network"] = json!({"chains": chains});
     }
     replace(path, format!("{case:#}\n"))?;
-    let next = format!("wrote {}\nnext: slcbeam check {0}; slcbeam run {0}\n", path.display());
-    let text = match asked.json {
-        true => next,
-        false => next + &open_ends(own, &written.coefficients()?.numbers),
-    };
-    super::answer(asked.json, || json!({"case": path}), || text)
+    super::print(&match asked.json {
+        true => format!("{:#}\n", json!({"case": path})),
+        false => {
+            let next = format!("wrote {}\nnext: slcbeam check {0}; slcbeam run {0}\n", path.display());
+            next + &open_ends(own, &written.coefficients()?.numbers)
+        }
+    })?;
+    Ok(ExitCode::SUCCESS)
 }
 
 fn rows(found: &Coefficients) -> Vec<Row> {

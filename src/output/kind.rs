@@ -43,75 +43,80 @@ pub enum FolderKind {
     Bands,
 }
 
-/// A kind with its names and files.
-type KindEntry = (
-    FolderKind,
-    &'static str,
-    &'static str,
-    &'static str,
-    &'static [&'static str],
-);
-
 impl FolderKind {
-    /// All kinds, each with its name on the page, its command, its identifying file, and all other files that the command itself writes. A
-    /// cycle precedes the run in its folder; designs precede other kinds with a `sweep.json`.
-    #[rustfmt::skip]
-    const ALL: [KindEntry; 15] = [
-        (Self::Cycle, "run", "periodic", "cycle.json", &RUN_FILES),
-        (Self::Designs, "designs", "sweep", "plan.json", &["designs.jsonl", "sweep.json", "sweep.csv", "sweep.npz", "sweep.svg", "map.svg"]),
-        (Self::Run, "run", "run", SUMMARY, &RUN_FILES),
-        (Self::Equilibrium, "equilibrium", "equilibrium", "equilibrium.json", &["path.csv", "shapes.csv", "path.svg", UNCERTAINTY]),
-        (Self::Modes, "modes", "modes", "modes.json", &["modes.csv", "modes.npz", "modes.svg", UNCERTAINTY]),
-        (Self::Study, "study", "study", "study.json", &["study.csv", "study.svg"]),
-        (Self::Effects, "effects", "effects", "effects.json", &["effects.csv", "effects.svg"]),
-        (Self::Floquet, "floquet", "floquet", "floquet.json", &["floquet.csv", "floquet.svg", UNCERTAINTY]),
-        (Self::Map, "map", "floquet --map", "map.json", &["map.csv", "map.svg"]),
-        (Self::Sweep, "sweep", "periodic --sweep", "sweep.json", &["sweep.csv", "sweep.svg"]),
-        (Self::Fit, "fit", "fit", "fit.json", &["fit.csv", "fit.svg", "fitted-case.json"]),
-        (Self::Sense, "sense", "sense", "sense.json", &["sense.csv", "sensors.csv", "sense.svg"]),
-        (Self::Optimum, "optimum", "optimize", "optimum.json", &["designs.csv", "optimum.svg", "optimum-case.json"]),
-        (Self::Response, "response", "response", "response.json", &["response.csv", "response.svg", "nyquist.svg", UNCERTAINTY]),
-        (Self::Bands, "bands", "bands", "bands.json", &["bands.csv", "bands.svg"]),
+    /// All kinds. A cycle precedes the run in its folder; designs precede other kinds with a `sweep.json`.
+    const ALL: [Self; 15] = [
+        Self::Cycle,
+        Self::Designs,
+        Self::Run,
+        Self::Equilibrium,
+        Self::Modes,
+        Self::Study,
+        Self::Effects,
+        Self::Floquet,
+        Self::Map,
+        Self::Sweep,
+        Self::Fit,
+        Self::Sense,
+        Self::Optimum,
+        Self::Response,
+        Self::Bands,
     ];
 
-    fn entry(self) -> &'static KindEntry {
-        &Self::ALL[Self::ALL.iter().position(|entry| entry.0 == self).unwrap_or(0)]
+    /// Name on the page, command, identifying file, and all other files that the command itself writes.
+    #[rustfmt::skip]
+    fn entry(self) -> (&'static str, &'static str, &'static str, &'static [&'static str]) {
+        match self {
+            Self::Run => ("run", "run", SUMMARY, &RUN_FILES),
+            Self::Equilibrium => ("equilibrium", "equilibrium", "equilibrium.json", &["path.csv", "shapes.csv", "path.svg", UNCERTAINTY]),
+            Self::Modes => ("modes", "modes", "modes.json", &["modes.csv", "modes.npz", "modes.svg", UNCERTAINTY]),
+            Self::Study => ("study", "study", "study.json", &["study.csv", "study.svg"]),
+            Self::Effects => ("effects", "effects", "effects.json", &["effects.csv", "effects.svg"]),
+            Self::Floquet => ("floquet", "floquet", "floquet.json", &["floquet.csv", "floquet.svg", UNCERTAINTY]),
+            Self::Map => ("map", "floquet --map", "map.json", &["map.csv", "map.svg"]),
+            Self::Cycle => ("run", "periodic", "cycle.json", &RUN_FILES),
+            Self::Sweep => ("sweep", "periodic --sweep", "sweep.json", &["sweep.csv", "sweep.svg"]),
+            Self::Designs => ("designs", "sweep", "plan.json", &["designs.jsonl", "sweep.json", "sweep.csv", "sweep.npz", "sweep.svg", "map.svg"]),
+            Self::Fit => ("fit", "fit", "fit.json", &["fit.csv", "fit.svg", "fitted-case.json"]),
+            Self::Sense => ("sense", "sense", "sense.json", &["sense.csv", "sensors.csv", "sense.svg"]),
+            Self::Optimum => ("optimum", "optimize", "optimum.json", &["designs.csv", "optimum.svg", "optimum-case.json"]),
+            Self::Response => ("response", "response", "response.json", &["response.csv", "response.svg", "nyquist.svg", UNCERTAINTY]),
+            Self::Bands => ("bands", "bands", "bands.json", &["bands.csv", "bands.svg"]),
+        }
     }
 
     /// Name on the page.
     pub fn name(self) -> &'static str {
-        self.entry().1
+        self.entry().0
     }
 
     /// The command, as it is typed.
     pub fn command(self) -> &'static str {
-        self.entry().2
+        self.entry().1
     }
 
     /// File that identifies the kind. It is written last, except the plan of `sweep`, which is written first.
     pub fn sign(self) -> &'static str {
-        self.entry().3
+        self.entry().2
     }
 
     /// All files that the command itself writes, the identifying file first; case and page are additional.
     pub fn files(self) -> Vec<&'static str> {
         [self.sign()]
             .into_iter()
-            .chain(self.entry().4.iter().copied())
+            .chain(self.entry().3.iter().copied())
             .collect()
     }
 
     /// True if a command writes a file of this name.
     pub fn owns(name: &str) -> bool {
-        Self::ALL.iter().any(|entry| entry.0.files().contains(&name))
+        Self::ALL.into_iter().any(|kind| kind.files().contains(&name))
     }
 
     /// Kind of the result in a folder. A killed run has a history, but no summary.
     pub fn within(dir: &Path) -> Option<Self> {
-        let found = Self::ALL.iter().find(|entry| dir.join(entry.3).is_file());
-        found
-            .map(|entry| entry.0)
-            .or_else(|| dir.join(HISTORY).is_file().then_some(Self::Run))
+        let found = Self::ALL.into_iter().find(|kind| dir.join(kind.sign()).is_file());
+        found.or_else(|| dir.join(HISTORY).is_file().then_some(Self::Run))
     }
 
     /// Reason why a path is not the folder of a run, if apparent: it is a case or another file, or the folder of another command.
@@ -147,7 +152,7 @@ impl FolderKind {
         }
         let what = match dir.is_dir() {
             true => {
-                let signs = Self::ALL.map(|(_, _, command, sign, _)| format!("{sign} ({command})"));
+                let signs = Self::ALL.map(|kind| format!("{} ({})", kind.sign(), kind.command()));
                 format!("it contains no result; expected one of {}", signs.join(", "))
             }
             false => NOWHERE.into(),

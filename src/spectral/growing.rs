@@ -4,7 +4,7 @@ use nalgebra::Complex;
 use slcbeam_dense::real_eigenvalues;
 
 use super::krylov::{FINITE, unit};
-use super::pencil::{Shifted, failure};
+use super::pencil::{Shifted, factor_near, failure};
 use super::{AT_LAST_DENSE, EigenPair, Pencil, SpectralError, refine::refine};
 use crate::sparse::Lu;
 
@@ -21,9 +21,6 @@ pub struct Bounds {
 
 /// Ratio of a real part to its error bound above which its sign is certain.
 const CERTAIN: f64 = 10.0;
-
-/// Relative distances by which the shift is moved if there are no factors.
-const MOVES: [f64; 4] = [0.0, 1e-7, 1e-5, 1e-3];
 
 /// Growing oscillations of a pencil, fastest growth first, one of each conjugate pair. All eigenvalues are computed in real arithmetic
 /// with a real `shift` [1/s]; those within the bounds are refined. None if there are more than [`AT_LAST_DENSE`] differential unknowns.
@@ -64,7 +61,11 @@ pub fn growing(pencil: &Pencil, shift: f64, bounds: &Bounds) -> Result<Option<Ve
 /// All finite eigenvalues, unrefined, from the operator K of [E32] with a real shift.
 fn eigenvalues(pencil: &Pencil, differential: &[usize], shift: f64) -> Result<Vec<Complex<f64>>, SpectralError> {
     let mut lu = Lu::new(pencil.pattern).map_err(failure)?;
-    let shift = factor(pencil, shift, &mut lu)?;
+    let shift = factor_near(|by| {
+        let moved = shift * (1.0 + by);
+        let values: Vec<f64> = pencil.a.iter().zip(pencil.b).map(|(a, b)| a + moved * b).collect();
+        lu.factor(&values).map(|()| moved).map_err(failure)
+    })?;
     let n = differential.len();
     let mut full = vec![0.0; pencil.pattern.columns()];
     let mut columns = Vec::with_capacity(n * n);
@@ -80,18 +81,4 @@ fn eigenvalues(pencil: &Pencil, differential: &[usize], shift: f64) -> Result<Ve
     let largest = all.iter().map(|theta| theta.norm()).fold(0.0, f64::max);
     let finite = all.iter().filter(|theta| theta.norm() > FINITE * largest);
     Ok(finite.map(|theta| shift - theta.inv()).collect())
-}
-
-/// Computes the factors of `A + shift B`, or of a shift as near as possible; returns the shift used.
-fn factor(pencil: &Pencil, shift: f64, lu: &mut Lu) -> Result<f64, SpectralError> {
-    let mut last = SpectralError::Singular { column: 0 };
-    for by in MOVES {
-        let moved = shift * (1.0 + by);
-        let values: Vec<f64> = pencil.a.iter().zip(pencil.b).map(|(a, b)| a + moved * b).collect();
-        match lu.factor(&values) {
-            Ok(()) => return Ok(moved),
-            Err(fault) => last = failure(fault),
-        }
-    }
-    Err(last)
 }

@@ -75,6 +75,21 @@ pub(super) struct Shifted<'a> {
 /// Relative distances by which a shift is moved if there are no factors.
 const MOVES: [f64; 4] = [0.0, 1e-7, 1e-5, 1e-3];
 
+/// Calls `factor` with relative distances from a shift, zero first, until it finds factors; returns the shift that it used.
+pub(super) fn factor_near<S>(mut factor: impl FnMut(f64) -> Result<S, SpectralError>) -> Result<S, SpectralError> {
+    let mut last = SpectralError::Singular { column: 0 };
+    for by in MOVES {
+        if halt::asked() {
+            return Err(SpectralError::Interrupted);
+        }
+        match factor(by) {
+            Ok(shift) => return Ok(shift),
+            Err(fault) => last = fault,
+        }
+    }
+    Err(last)
+}
+
 impl<'a> Shifted<'a> {
     pub fn new(pencil: &Pencil<'a>, shift: Complex<f64>) -> Result<Self, SpectralError> {
         let entries = pencil.a.iter().zip(pencil.b);
@@ -101,21 +116,13 @@ impl<'a> Shifted<'a> {
         } else {
             largest(self.pencil.a) / largest(self.pencil.b).max(f64::MIN_POSITIVE)
         };
-        let mut last = SpectralError::Singular { column: 0 };
-        for by in MOVES {
-            if halt::asked() {
-                return Err(SpectralError::Interrupted);
-            }
+        factor_near(|by| {
             let moved = s + Complex::new(0.8, 0.6) * (by * size);
             for ((value, a), b) in self.values.iter_mut().zip(self.pencil.a).zip(self.pencil.b) {
                 *value = moved * *b + a;
             }
-            match self.lu.factor(&self.values) {
-                Ok(()) => return Ok(moved),
-                Err(fault) => last = failure(fault),
-            }
-        }
-        Err(last)
+            self.lu.factor(&self.values).map(|()| moved).map_err(failure)
+        })
     }
 
     /// `(A + σ B)⁻¹ B Pᵀ v`, for all unknowns.

@@ -34,16 +34,9 @@ pub const FITTED: &str = "fitted-case.json";
 /// # Errors
 /// A file cannot be written.
 pub fn write(folder: &mut ResultFolder, problem: &FitProblem, found: &Fitted) -> Result<()> {
-    let (files, picture) = (
-        vec![(CSV, table(problem, found)), (JSON, results::text(&found.fit))],
-        drawn(problem, found),
-    );
-    folder.fill_with_both(
-        &problem.case.written(),
-        (FITTED, &found.case.written()),
-        files,
-        (PICTURE, picture),
-    )
+    let files = vec![(CSV, table(problem, found)), (JSON, results::text(&found.fit))];
+    let (picture, fitted) = ((PICTURE, drawn(problem, found)), found.case.written());
+    folder.fill_with_both(&problem.case.written(), (FITTED, &fitted), files, picture)
 }
 
 /// Columns beside the observations: names with units, and values.

@@ -341,7 +341,7 @@ impl PdfContent {
     }
 }
 
-/// A component of a color from 0 to 1, with three decimals.
+/// Components of a color from 0 to 1, with three decimals.
 fn shares(Colour(r, g, b): Colour) -> [f32; 3] {
     [r, g, b].map(|x| (1000.0 * f32::from(x) / 255.0).round() / 1000.0)
 }
